@@ -1,0 +1,104 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// The [[take]] tables of a rig file. A key belongs to one kind of take; with two force transducers the forces, speeds and
+// positions are required, without them everything is compared in relative terms and they may be left out.
+//
+#pragma once
+
+#include <rosin/acquire/rig.hpp>
+#include <rosin/adapt/toml_fields.hpp>
+
+namespace rosin::detail {
+
+/// [[time in s, value], ...], times ascending.
+inline profile read_profile(toml_fields& fields, std::string_view key, const value_range& values) {
+  profile out;
+  const auto* list = fields.list(key, "a list of pairs, as [[0, 0], [0.05, 0.2]]");
+  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+    const std::string place = fields.path(key) + "[" + std::to_string(i) + "]";
+    const auto* pair = list->get(i)->as_array();
+    if (pair == nullptr || pair->size() != 2) {
+      fields.wrong_type(*list->get(i), place, "a pair [time in s, value]");
+      continue;
+    }
+    const auto time = fields.number_in(*pair->get(0), place + "[0]", zero_to(1e6));
+    const auto value = fields.number_in(*pair->get(1), place + "[1]", values);
+    if (!time || !value) continue;
+    if (!out.empty() && *time <= out.back().first) fields.problem(*pair, place, "is not later than the point before it");
+    out.emplace_back(*time, *value);
+  }
+  if (list != nullptr && list->empty()) fields.refuse(key, "is empty");
+  return out;
+}
+
+inline void read_pluck(toml_fields& fields, take& t, bool forces) {
+  if (forces && !fields.has("force_N")) fields.missing("force_N");
+  t.force_N = fields.number("force_N", up_to(1e4));
+  t.force_tolerance = fields.number("force_tolerance", {0, 1, false, true});
+  for (const char* key : {"speed_m_s", "normal_force_N", "speed_profile_m_s", "normal_force_profile_N"})
+    fields.refuse(key, "does not belong to a take of kind pluck");
+}
+
+inline void read_bow(toml_fields& fields, take& t, bool forces) {
+  for (const char* key : {"speed_m_s", "normal_force_N"})
+    if (forces && !fields.has(key)) fields.missing(key);
+  t.speed_m_s = fields.number("speed_m_s", up_to(100));
+  t.normal_force_N = fields.number("normal_force_N", up_to(1e4));
+  t.speed_profile_m_s = read_profile(fields, "speed_profile_m_s", {-100, 100});
+  t.normal_force_profile_N = read_profile(fields, "normal_force_profile_N", zero_to(1e4));
+  for (const char* key : {"force_N", "force_tolerance"}) fields.refuse(key, "does not belong to a take of kind bow");
+}
+
+inline void read_quiet(toml_fields& fields) {
+  for (const char* key : {"force_N", "force_tolerance", "speed_m_s", "normal_force_N", "speed_profile_m_s",
+                          "normal_force_profile_N", "contact_position", "position_unknown", "strength", "start_s"})
+    fields.refuse(key, "does not belong to a take of kind quiet");
+}
+
+/// Where the string is touched: of the take, of [contact], or declared unknown.
+inline void read_place(toml_fields& fields, take& t, bool needed) {
+  t.contact_position = fields.number("contact_position", inside_unit);
+  t.position_unknown = fields.flag("position_unknown");
+  t.strength = fields.number("strength", up_to(1e9));
+  t.start_s = fields.number("start_s", zero_to(3600));
+  if (t.position_unknown && t.contact_position)
+    fields.refuse("position_unknown", "contradicts contact_position, which stands beside it");
+  if (needed && !t.position_unknown && !fields.has("contact_position"))
+    fields.log().add(fields.line(), fields.path("contact_position"), "is missing, and there is no [contact] position");
+}
+
+/// `forces`: the rig has two force transducers; `placed`: [contact] says where.
+inline take read_take(toml_fields fields, bool forces, bool placed) {
+  take t;
+  t.line = fields.line();
+  t.name = fields.required_text("name").value_or("");
+  t.file = fields.required_text("file").value_or("");
+  t.hold_out = fields.flag("hold_out");
+  if (!fields.has("kind")) fields.missing("kind");
+  const auto kind = fields.choice("kind", take_kind_names);
+  t.kind = kind ? static_cast<take_kind>(*kind) : take_kind::quiet;
+  if (t.kind != take_kind::quiet) read_place(fields, t, forces && !placed);
+  if (t.kind == take_kind::pluck) read_pluck(fields, t, forces);
+  if (t.kind == take_kind::bow) read_bow(fields, t, forces);
+  if (kind && t.kind == take_kind::quiet) read_quiet(fields);
+  if (kind || !fields.has("kind")) fields.unknown();  // with an unknown kind, nobody can say which keys belong
+  if (t.name.find_first_of("/\\") != std::string::npos) fields.refuse("name", "must not hold / or \\");
+  if (t.file.starts_with('/')) fields.refuse("file", "must be a path relative to the folder of the rig file");
+  return t;
+}
+
+inline std::vector<take> read_takes(toml_fields& root, bool forces, bool placed) {
+  std::vector<take> out;
+  if (!root.has("take")) root.missing("take");
+  root.each_table("take", "a list of tables, each headed [[take]]", [&](toml_fields fields) {
+    take one = read_take(fields, forces, placed);
+    for (const take& other : out)
+      if (!one.name.empty() && one.name == other.name)
+        fields.refuse("name", "\"" + one.name + "\" is the name of an earlier take, line " + std::to_string(other.line));
+    out.push_back(std::move(one));
+  });
+  return out;
+}
+
+}  // namespace rosin::detail
