@@ -1,0 +1,168 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Modes that are stepped together under point forces, exactly: with the force linear over a step of length h, a mode
+// with pole p = -s + i w_d, velocity q' = Re(z) and displacement q = (w_d Im(z) - s Re(z)) / w^2 goes on by
+//
+//     z(h) = e^{p h} z(0) + b (phi_a f(0) + phi_b f(h)) shape(x) / mass,    b = 1 + i s / w_d,
+//     phi_b = (e^{p h} - 1 - p h) / (p^2 h),    phi_a = (e^{p h} - 1) / p - phi_b.
+//
+// Stored is the free state at the coming step, e^{p h} z + b phi_a f: one pass through memory then gives the
+// next one and all that must be known before the new force is: velocities at the ports and forces on the ends. The
+// driving-point mobility of this scheme is the sampled, triangle-weighted one of the modes, hence positive real: no step
+// can create energy. Several ports (contact, point masses, dampers) make the one bank serve several point forces.
+//
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <rosin/simulate/modal_string.hpp>
+
+namespace rosin {
+
+/// phi_a and phi_b of the header's equation: responses to the force at a step's begin and end.
+struct step_response {
+  std::complex<double> decay, begin, end;
+};
+
+[[nodiscard]] inline step_response respond_over_step(std::complex<double> pole, double step_s) {
+  const auto x = pole * step_s;
+  const auto decay = std::exp(x);
+  std::complex<double> first = 0, second = 0;  // (e^x - 1) / x, (e^x - 1 - x) / x^2
+  if (std::abs(x) < 0.3) {
+    for (int k = 16; k >= 1; --k) second = (1.0 + second * x) / (k + 1.0);
+    first = 1.0 + second * x;
+  } else {
+    first = (decay - 1.0) / x;
+    second = (first - 1.0) / x;
+  }
+  return {decay, step_s * (first - second), step_s * second};
+}
+
+/// What acts at the end of a step, besides the force that is still to be found.
+template <int Ports>
+struct bank_reading {
+  std::array<double, static_cast<std::size_t>(Ports)> velocity{};  ///< at the ports, m/s
+  double near = 0, far = 0;                                        ///< forces on the ends, N
+};
+
+template <int Ports>
+class modal_bank {
+public:
+  static constexpr std::size_t ports = static_cast<std::size_t>(Ports);
+  using values = std::array<double, ports>;
+
+  modal_bank(std::span<const string_mode> modes, damping_convention damping, const values& positions, double step_s) {
+    std::vector<const string_mode*> odd, even;
+    for (const auto& m : modes) (m.parity() > 0 ? odd : even).push_back(&m);
+    append(odd, damping, positions, step_s);
+    odd_ = lanes_.size();
+    append(even, damping, positions, step_s);
+  }
+
+  /// Velocity at port i for 1 N at port j at the end of the same step.
+  [[nodiscard]] double mobility(std::size_t i, std::size_t j) const noexcept { return mobility_[i][j]; }
+  /// Forces on the ends for 1 N at port j at the end of the same step.
+  [[nodiscard]] double near_gain(std::size_t j) const noexcept { return near_gain_[j]; }
+  [[nodiscard]] double far_gain(std::size_t j) const noexcept { return far_gain_[j]; }
+  /// Static displacement at port j for 1 N there, and static force on the near end, of these modes only.
+  [[nodiscard]] double compliance(std::size_t j) const noexcept { return compliance_[j]; }
+  [[nodiscard]] double near_share(std::size_t j) const noexcept { return near_share_[j]; }
+  [[nodiscard]] double far_share(std::size_t j) const noexcept { return far_share_[j]; }
+
+  /// State at the end of the step under way if no force acts there.
+  [[nodiscard]] const bank_reading<Ports>& free() const noexcept { return free_; }
+
+  /// Ends the step with these forces and begins the next.
+  void advance(const values& force) noexcept {
+    accumulator odd, even;
+    for (std::size_t i = 0; i < odd_; ++i) step(lanes_[i], force, odd);
+    for (std::size_t i = odd_; i < lanes_.size(); ++i) step(lanes_[i], force, even);
+    for (std::size_t p = 0; p < ports; ++p) free_.velocity[p] = odd.velocity[p].sum() + even.velocity[p].sum();
+    const double o = odd.end.sum(), e = even.end.sum();
+    free_.near = o + e;
+    free_.far = o - e;
+  }
+
+private:
+  static constexpr int width = 8;
+  using pack = Eigen::Array<double, width, 1>;
+
+  struct lane {
+    pack re = pack::Zero(), im = pack::Zero();                // state
+    pack turn_re = pack::Zero(), turn_im = pack::Zero();      // e^{p h}
+    pack push_re = pack::Zero(), push_im = pack::Zero();      // e^{p h} b phi_b + b phi_a
+    pack end_re = pack::Zero(), end_im = pack::Zero();        // state to force on the near end
+    std::array<pack, ports> shape{};
+  };
+  struct accumulator {
+    std::array<pack, ports> velocity{};
+    pack end = pack::Zero();
+    accumulator() noexcept { velocity.fill(pack::Zero()); }
+  };
+
+  static void step(lane& l, const values& force, accumulator& sum) noexcept {
+    pack drive = l.shape[0] * force[0];
+    for (std::size_t p = 1; p < ports; ++p) drive += l.shape[p] * force[p];
+    const pack re = l.turn_re * l.re - l.turn_im * l.im + l.push_re * drive;
+    const pack im = l.turn_im * l.re + l.turn_re * l.im + l.push_im * drive;
+    l.re = re;
+    l.im = im;
+    for (std::size_t p = 0; p < ports; ++p) sum.velocity[p] += l.shape[p] * re;
+    sum.end += l.end_re * re + l.end_im * im;
+  }
+
+  void append(const std::vector<const string_mode*>& modes, damping_convention damping, const values& positions, double h) {
+    for (std::size_t n = 0; n < modes.size(); ++n) {
+      if (n % width == 0) {
+        lanes_.emplace_back();
+        lanes_.back().shape.fill(pack::Zero());
+      }
+      set(lanes_.back(), static_cast<Eigen::Index>(n % width), *modes[n], damping, positions, h);
+    }
+  }
+
+  void set(lane& l, Eigen::Index i, const string_mode& m, damping_convention damping, const values& positions, double h) {
+    const auto p = m.pole();
+    const auto b = (1.0 - std::complex<double>{0, 1} * p.real() / p.imag()) / m.mass_kg;
+    const auto r = respond_over_step(p, h);
+    const auto push = b * (r.decay * r.end + r.begin);
+    const double w2 = m.omega_rad_s * m.omega_rad_s, in_stress = damping == damping_convention::kelvin_voigt ? 1 : 0;
+    const std::complex<double> end{
+        m.end_stiffness_N_m * (p.real() / w2 + in_stress * m.inverse_quality / m.omega_rad_s),
+        m.end_stiffness_N_m * p.imag() / w2};
+    l.turn_re[i] = r.decay.real(), l.turn_im[i] = r.decay.imag();
+    l.push_re[i] = push.real(), l.push_im[i] = push.imag();
+    l.end_re[i] = end.real(), l.end_im[i] = end.imag();
+    for (std::size_t k = 0; k < ports; ++k) l.shape[k][i] = m.shape(positions[k]);
+    add_gains(l, i, m, b * r.end, end);
+  }
+
+  void add_gains(const lane& l, Eigen::Index i, const string_mode& m, std::complex<double> at_once,
+                 std::complex<double> end) {
+    const double end_at_once = end.real() * at_once.real() + end.imag() * at_once.imag();
+    const double yields = 1 / (m.mass_kg * m.omega_rad_s * m.omega_rad_s);
+    for (std::size_t j = 0; j < ports; ++j) {
+      for (std::size_t k = 0; k < ports; ++k) mobility_[j][k] += l.shape[j][i] * l.shape[k][i] * at_once.real();
+      near_gain_[j] += l.shape[j][i] * end_at_once;
+      far_gain_[j] += l.shape[j][i] * end_at_once * m.parity();
+      compliance_[j] += l.shape[j][i] * l.shape[j][i] * yields;
+      near_share_[j] += l.shape[j][i] * m.end_stiffness_N_m * yields;
+      far_share_[j] += l.shape[j][i] * m.end_stiffness_N_m * yields * m.parity();
+    }
+  }
+
+  std::vector<lane> lanes_;
+  std::size_t odd_ = 0;
+  bank_reading<Ports> free_{};
+  std::array<values, ports> mobility_{};
+  values near_gain_{}, far_gain_{}, compliance_{}, near_share_{}, far_share_{};
+};
+
+}  // namespace rosin
