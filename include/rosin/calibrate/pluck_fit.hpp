@@ -1,0 +1,160 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Calibration from plucks made by a breaking wire: pitch, position, stiffness and loss of the string, instant and strength of
+// each release, and the gains of both channels, from one pluck or several together, by maximum likelihood.
+//
+//     recording = gain * (pluck model) + offset + white noise, inside a band
+//
+// Levenberg-Marquardt on the closed form of pluck_model.hpp. The pitch is known to a per cent at first and to a part in 1e8 in the
+// end, so the fit starts with the first partials of the first periods and takes in more as it grows sure (stages()).
+// Gains and strengths only enter as products; nominal values with their tolerances decide between them (priors), and
+// what that leaves open is one common scale, reported apart.
+//
+#pragma once
+
+#include <rosin/calibrate/pluck_problem.hpp>
+
+#include <Eigen/Dense>
+
+#include <string>
+
+namespace rosin {
+
+/// What a fit of plucks found. Order of parameters and covariance: pluck_layout.
+struct pluck_fit_result {
+  pluck_layout layout;
+  Eigen::VectorXd value, sd;
+  Eigen::MatrixXd covariance;
+  std::array<double, 2> noise_N{};       ///< white noise per channel, rms over the whole band to half the sampling rate
+  double misfit = 1;                     ///< power at the partials against what noise explains; 1: the model is complete
+  std::vector<double> residual_ratio;    ///< per take: rms(recorded - model) / rms(recorded), inside the band
+  std::vector<std::string> unidentified; ///< parameters that these plucks cannot tell
+  band limits{0, 0};
+  double horizon_periods = 0;            ///< how much of the decay was used; all of it where the model holds
+  int iterations = 0;
+  bool converged = false;
+
+  [[nodiscard]] ringing_string string() const { return layout.string(value); }
+};
+
+namespace detail {
+
+struct stage {
+  int partials;
+  double periods;
+};
+
+/// From the first partials and periods on; what follows takes in all partials of the band.
+inline constexpr std::array<stage, 4> approach{{{4, 5}, {6, 12}, {12, 30}, {24, 80}}};
+/// The whole record; less of it where the model does not hold for so long.
+inline constexpr std::array<double, 3> horizon_periods{1e9, 30, 8};
+
+/// One Levenberg-Marquardt descent at fixed weights. Returns whether it settled.
+inline bool descend(const pluck_problem& problem, const pluck_layout& layout, const Eigen::VectorXd& start, Eigen::VectorXd& value,
+                    int most, double enough, int& iterations) {
+  double damping = 1e-6;
+  normal_equations now = problem.linearise(value);
+  for (int i = 0; i < most; ++i, ++iterations) {
+    const Eigen::VectorXd scale = now.hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    Eigen::MatrixXd scaled = scale.asDiagonal() * now.hessian * scale.asDiagonal();
+    scaled.diagonal().array() += damping;
+    const Eigen::VectorXd step = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * now.gradient);
+    if (!step.allFinite()) return false;
+    const Eigen::VectorXd tried = value + step;
+    const bool sane = layout.plausible(tried, start, problem.highest_Hz());
+    normal_equations next = sane ? problem.linearise(tried) : now;
+    const double gain = sane ? now.cost - next.cost : -1.0;
+    if (std::isfinite(next.cost) && gain >= 0) {
+      value = tried;
+      now = std::move(next);
+      damping = std::max(1e-12, damping / 10);
+      if (gain <= enough) return true;
+    } else {
+      if (sane && step.dot(now.gradient) <= enough) return true;  // no better to be had within rounding
+      damping = std::max(1e-6, damping * 30);
+      if (damping > 1e8) return false;
+    }
+  }
+  return false;
+}
+
+/// Names of the parameters that the data leave open: those in the directions in which the scaled Hessian vanishes.
+inline std::vector<std::string> unidentified(const Eigen::MatrixXd& data_hessian, const pluck_layout& layout) {
+  const Eigen::VectorXd diagonal = data_hessian.diagonal();
+  const Eigen::VectorXd scale = diagonal.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * data_hessian * scale.asDiagonal());
+  std::vector<std::string> names;
+  for (Eigen::Index p = 0; p < diagonal.size(); ++p) {
+    if (!layout.is_free(p) || layout.is_scale(p)) continue;  // one common scale is always left to the nominal values
+    double open = diagonal[p] > 0 ? 0 : 1;
+    for (Eigen::Index m = 0; m < modes.eigenvalues().size(); ++m)
+      if (modes.eigenvalues()[m] < 1e-9) open = std::max(open, std::abs(modes.eigenvectors()(p, m)));
+    if (open > 0.1) names.push_back(layout.name(p));
+  }
+  return names;
+}
+
+inline double worst(const pluck_fit_result& result) {
+  return *std::max_element(result.residual_ratio.begin(), result.residual_ratio.end());
+}
+
+/// The last descents, over all partials, with the weights that the residual itself shows; then covariance and verdict.
+inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
+                   const Eigen::VectorXd& begin, double periods, pluck_fit_result& result) {
+  std::array<double, 2> noise{1e-2, 1e-2};
+  for (const double within : {400.0, 1e9})  // the second descent starts sure of the pitch
+    if (periods > 400 || within > 400) {
+      const pluck_problem problem(takes, result.layout, options, guess, result.value, options.most_partials,
+                                  std::min(periods, within), true, noise);
+      result.converged = descend(problem, result.layout, begin, result.value, 25, 1e-2, result.iterations);
+    }
+  pluck_problem problem(takes, result.layout, options, guess, result.value, options.most_partials, periods, true, noise);
+  for (int pass = 0; pass < 2; ++pass) {
+    noise = problem.assess(result.value).noise;
+    problem.set_noise(noise);
+    result.converged = descend(problem, result.layout, begin, result.value, 25, 1e-3, result.iterations);
+  }
+  const assessment found = problem.assess(result.value);
+  result.noise_N = found.noise;
+  result.misfit = found.misfit;
+  result.residual_ratio = found.residual_ratio;
+  const normal_equations end = problem.linearise(result.value);
+  const Eigen::MatrixXd inverse = result.layout.invert(end.hessian);
+  result.covariance = inverse * (end.prior + found.inflation() * end.scatter) * inverse;
+  result.sd = result.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  result.unidentified = unidentified(end.hessian - end.prior, result.layout);
+}
+
+}  // namespace detail
+
+/// Fits `takes` together. Fails, with the take and the reason, where no release is found or the string does not ring as declared.
+[[nodiscard]] inline outcome<pluck_fit_result> fit_plucks(const std::vector<pluck_take>& takes, const pluck_guess& guess,
+                                                          const pluck_options& options = {}) {
+  outcome<pluck_start> start = find_start(takes, guess);
+  if (!start) return failure{start.error()};
+  pluck_fit_result result;
+  result.layout = pluck_layout(takes, options);
+  result.limits = options.limits_for(takes.front().rate_Hz);
+  result.value = result.layout.initial(takes, guess, start->fundamental_Hz, start->release_s, start->position);
+
+  const Eigen::VectorXd begin = result.value;
+  for (const detail::stage& s : detail::approach) {
+    const pluck_problem problem(takes, result.layout, options, guess, result.value, s.partials, s.periods, false, {1e-2, 1e-2});
+    detail::descend(problem, result.layout, begin, result.value, 12, 1e-2, result.iterations);
+  }
+  const Eigen::VectorXd near = result.value;
+  for (const double periods : detail::horizon_periods) {
+    result.value = near;
+    detail::finish(takes, guess, options, begin, periods, result);
+    result.horizon_periods = periods;
+    if (detail::worst(result) < 0.1) break;
+  }
+  const double worst = detail::worst(result);
+  if (worst > 0.8)
+    return failure{takes.front().name + ": the plucks do not ring as the declared string should (residual " +
+                   std::to_string(static_cast<int>(100 * worst)) + " % of the signal): check pitch, position, channels and rate"};
+  return result;
+}
+
+}  // namespace rosin

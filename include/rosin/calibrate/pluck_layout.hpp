@@ -1,0 +1,177 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What a fit of plucks is given, which quantities it seeks, and in which order they stand:
+//
+//     f0, b, 1/Q, internal loss, air loss, psi, ln gain near, ln gain far,     shared by all takes
+//     one position for each declared position,
+//     per take: instant of release, ln strength, offset near, offset far.
+//
+#pragma once
+
+#include <rosin/calibrate/pluck_model.hpp>
+#include <rosin/core/outcome.hpp>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace rosin {
+
+/// One recorded pluck: forces on the terminations in nominal newtons.
+struct pluck_take {
+  std::string name;
+  double rate_Hz = 0;
+  std::array<std::vector<double>, 2> force_N;  ///< near, far; equally long
+  double strength_N = 1;                       ///< nominal breaking force
+  double strength_tolerance = 0.03;            ///< relative, a limit: two standard deviations
+  double position = 0.5;                       ///< declared, from the near end
+};
+
+/// What is known beforehand.
+struct pluck_guess {
+  double fundamental_Hz = 0;                          ///< within 2 %
+  double inharmonicity = 0;                           ///< 0: unknown
+  double quality = 1000;
+  std::array<double, 2> gain_tolerance{0.05, 0.05};   ///< relative limits
+  std::array<double, 2> ac_coupled_Hz{0, 0};          ///< 0: DC coupled
+};
+
+/// Which nuisances are free, and which band is used.
+struct pluck_options {
+  bool stiffness = true;         ///< false: the string is taken for ideal
+  bool internal_loss = true;     ///< 1/Q may grow with frequency
+  bool air_loss = false;
+  bool convention = true;        ///< psi is fitted
+  double pass_fraction = 0.34;   ///< edges of the band, of the sampling rate: below where converters begin to cut off
+  double stop_fraction = 0.42;
+  int most_partials = 160;       ///< a longer, lower string is fitted over fewer hertz
+
+  [[nodiscard]] band limits_for(double rate_Hz, double highest_Hz = 1e300) const noexcept {
+    const double stop = std::min(stop_fraction * rate_Hz, highest_Hz);
+    return {stop * pass_fraction / stop_fraction, stop};
+  }
+};
+
+/// Where each parameter stands in the vectors and matrices of the fit.
+class pluck_layout {
+public:
+  enum shared { fundamental, inharmonicity, inverse_quality, internal_loss, air_loss, convention, gain_near, gain_far, first_position };
+  enum per_take { release, strength, offset_near, offset_far, take_size };
+
+  pluck_layout() = default;
+  pluck_layout(const std::vector<pluck_take>& takes, const pluck_options& options) : options_{options} {
+    for (const pluck_take& take : takes) {
+      auto found = std::find(positions_.begin(), positions_.end(), take.position);
+      group_.push_back(found - positions_.begin());
+      if (found == positions_.end()) positions_.push_back(take.position);
+      names_.push_back(take.name);
+    }
+  }
+
+  [[nodiscard]] Eigen::Index size() const { return at(group_.size(), 0); }
+  [[nodiscard]] std::size_t takes() const { return group_.size(); }
+  /// Declared positions, one for each that is fitted.
+  [[nodiscard]] const std::vector<double>& positions() const { return positions_; }
+  [[nodiscard]] Eigen::Index position(std::size_t take) const { return first_position + group_[take]; }
+  [[nodiscard]] Eigen::Index at(std::size_t take, int which) const {
+    return first_position + static_cast<Eigen::Index>(positions_.size()) + static_cast<Eigen::Index>(take) * take_size + which;
+  }
+
+  [[nodiscard]] bool is_free(Eigen::Index p) const {
+    return (p != inharmonicity || options_.stiffness) && (p != internal_loss || options_.internal_loss) &&
+           (p != air_loss || options_.air_loss) && (p != convention || options_.convention);
+  }
+  /// Gains and strengths: only their products show.
+  [[nodiscard]] bool is_scale(Eigen::Index p) const {
+    return p == gain_near || p == gain_far || (p >= at(0, 0) && (p - at(0, 0)) % take_size == strength);
+  }
+
+  [[nodiscard]] std::string name(Eigen::Index p) const {
+    static constexpr std::array names{"fundamental_Hz", "inharmonicity",  "inverse_quality", "loss_internal_s",
+                                      "loss_air_sqrt_Hz", "convention", "ln_gain_near", "ln_gain_far"};
+    static constexpr std::array mine{"release_s", "ln_strength", "offset_near_N", "offset_far_N"};
+    if (p < first_position) return names[static_cast<std::size_t>(p)];
+    if (p < at(0, 0)) return positions_.size() == 1 ? "position" : "position " + std::to_string(p - first_position + 1);
+    const auto i = static_cast<std::size_t>(p - at(0, 0));
+    return std::string(mine[i % take_size]) + " of " + names_[i / take_size];
+  }
+
+  [[nodiscard]] ringing_string string(const Eigen::VectorXd& v) const {
+    return {v[fundamental], v[inharmonicity], {1 / v[inverse_quality], v[internal_loss], v[air_loss]}, v[convention]};
+  }
+
+  /// Steps for numerical derivatives of poles and residues: small against what each parameter can be known to.
+  [[nodiscard]] double step(Eigen::Index p, const Eigen::VectorXd& v) const {
+    static constexpr std::array common{0.0, 1e-9, 1e-8, 1e-12, 1e-6, 1e-4, 1e-6, 1e-6};
+    static constexpr std::array mine{1e-9, 1e-6, 1e-6, 1e-6};
+    if (p == fundamental) return 1e-7 * v[p];
+    if (p < first_position) return common[static_cast<std::size_t>(p)];
+    return p < at(0, 0) ? 1e-7 : mine[static_cast<std::size_t>(p - at(0, 0)) % take_size];
+  }
+
+  /// What is known of a parameter beforehand: value and standard deviation; sd 0: nothing.
+  struct knowledge {
+    double value, sd;
+  };
+  [[nodiscard]] knowledge prior(Eigen::Index p, const std::vector<pluck_take>& takes, const pluck_guess& guess) const {
+    if (p == gain_near || p == gain_far) return {0, guess.gain_tolerance[static_cast<std::size_t>(p - gain_near)] / 2};
+    if (p == convention) return {0, 1.5};  // conventions lie between -1 and 1
+    if (p < at(0, 0) || !is_scale(p)) return {0, 0};
+    const pluck_take& take = takes[static_cast<std::size_t>(p - at(0, 0)) / take_size];
+    return {std::log(take.strength_N), take.strength_tolerance / 2};
+  }
+
+  /// Starting point: pitch, releases and positions as given; nominal values for the rest.
+  [[nodiscard]] Eigen::VectorXd initial(const std::vector<pluck_take>& takes, const pluck_guess& guess, double fundamental_Hz,
+                                        const std::vector<double>& release_s, const std::vector<double>& position_of) const {
+    Eigen::VectorXd v = Eigen::VectorXd::Zero(size());
+    v[fundamental] = fundamental_Hz;
+    v[inharmonicity] = options_.stiffness ? guess.inharmonicity : 0.0;
+    v[inverse_quality] = 1 / guess.quality;
+    v[convention] = options_.convention ? 0.0 : -1.0;
+    for (std::size_t t = 0; t < takes.size(); ++t) {
+      v[position(t)] = position_of[t];
+      v[at(t, release)] = release_s[t];
+      v[at(t, strength)] = std::log(takes[t].strength_N);
+    }
+    return v;
+  }
+
+  /// Whether a string could be like this, and near enough to where the fit began.
+  [[nodiscard]] bool plausible(const Eigen::VectorXd& v, const Eigen::VectorXd& start, double highest_Hz) const {
+    bool ok = v.allFinite() && std::abs(v[fundamental] / start[fundamental] - 1) < 0.08 && v[inverse_quality] > 1e-7 &&
+              v[inverse_quality] < 0.2 && v[inharmonicity] > -1e-5 && v[inharmonicity] < 0.01 && std::abs(v[convention]) < 300;
+    for (const double f : {v[fundamental], 30 * v[fundamental], highest_Hz}) ok = ok && string(v).loss.inverse_q(f) > 0;
+    for (std::size_t t = 0; t < group_.size(); ++t)
+      ok = ok && v[position(t)] > 0.002 && v[position(t)] < 0.998 && std::abs(v[position(t)] - start[position(t)]) < 0.06 &&
+           std::abs(v[at(t, release)] - start[at(t, release)]) * start[fundamental] < 0.1;
+    return ok;
+  }
+
+  /// Inverse over the free parameters; rows and columns of the fixed ones are zero.
+  [[nodiscard]] Eigen::MatrixXd invert(const Eigen::MatrixXd& hessian) const {
+    const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    Eigen::MatrixXd inverse = scale.asDiagonal() *
+                              Eigen::MatrixXd((scale.asDiagonal() * hessian * scale.asDiagonal())
+                                                  .completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
+    for (Eigen::Index p = 0; p < size(); ++p)
+      if (!is_free(p)) {
+        inverse.row(p).setZero();
+        inverse.col(p).setZero();
+      }
+    return inverse;
+  }
+
+private:
+  pluck_options options_{};
+  std::vector<double> positions_;
+  std::vector<Eigen::Index> group_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace rosin

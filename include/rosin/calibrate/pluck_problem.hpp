@@ -1,0 +1,271 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// The least-squares problem behind the fit of plucks: residual, gradient and normal matrix. Each take is two stretches, before
+// the release and after it, each a sum of damped lines; a guard of half a filter's length around the release is left out.
+// Poles and residues are differentiated numerically (they cost nothing); the sums over samples are done by damped_lines.hpp.
+//
+#pragma once
+
+#include <rosin/calibrate/pluck_start.hpp>
+#include <rosin/propagate/fir.hpp>
+
+namespace rosin {
+
+/// hessian step = gradient; `prior` is the part of the Hessian that does not come from data, `scatter` the covariance of the
+/// gradient's data part for white noise of the assumed size (less than the Hessian where the band falls off).
+struct normal_equations {
+  Eigen::MatrixXd hessian, prior, scatter;
+  Eigen::VectorXd gradient;
+  double cost = 0;
+};
+
+/// What the residual says of the model.
+struct assessment {
+  std::array<double, 2> noise{};
+  double misfit = 1, dimensions = 1;
+  std::vector<double> residual_ratio;
+  /// Variance is inflated by lack of fit only where noise does not explain it.
+  [[nodiscard]] double inflation() const { return misfit > 1 + 4 * std::sqrt(2 / dimensions) ? misfit : 1.0; }
+};
+
+class pluck_problem {
+public:
+  pluck_problem(const std::vector<pluck_take>& takes, const pluck_layout& layout, const pluck_options& options,
+                const pluck_guess& guess, const Eigen::VectorXd& value, int partials, double periods, bool filtered,
+                std::array<double, 2> noise)
+      : layout_{layout}, ac_coupled_Hz_{guess.ac_coupled_Hz}, noise_{noise}, partials_{std::min(partials, options.most_partials)} {
+    for (Eigen::Index p = 0; p < layout.size(); ++p) prior_.push_back(layout.prior(p, takes, guess));
+    for (std::size_t i = 0; i < takes.size(); ++i) {
+      const double rate = takes[i].rate_Hz;
+      limits_ = options.limits_for(rate, layout.string(value).partial_Hz(options.most_partials));
+      fir kernel{0, {1.0}};
+      if (filtered) kernel = shortest_fir([](double) { return 1.0; }, limits_, rate, -400, 400, 1e-5);
+      else limits_ = {0.5 * rate, 0.5 * rate};
+      const int guard = std::max(kernel.last(), static_cast<int>(2.5 / (options.stop_fraction - options.pass_fraction)));
+      const double release = value[layout.at(i, pluck_layout::release)] * rate;
+      const auto length = static_cast<int>(takes[i].force_N[0].size());
+      const int edge = kernel.last(), end = static_cast<int>(std::min<double>(length - edge, release + periods * rate / value[0]));
+      const int before = static_cast<int>(std::floor(release)) - guard, after = static_cast<int>(std::ceil(release)) + guard;
+      takes_.push_back({rate, {cut(takes[i], kernel, edge, before), cut(takes[i], kernel, std::max(after, edge), end)}});
+    }
+  }
+
+  [[nodiscard]] double highest_Hz() const { return limits_.stop_Hz; }
+  void set_noise(std::array<double, 2> noise) { noise_ = noise; }
+
+  [[nodiscard]] normal_equations linearise(const Eigen::VectorXd& value) const;
+  [[nodiscard]] assessment assess(const Eigen::VectorXd& value) const;
+
+private:
+  struct stretch {
+    double begin_s = 0;
+    std::array<Eigen::VectorXd, 2> data;
+    [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(data[0].size()); }
+  };
+  struct prepared {
+    double rate_Hz;
+    std::array<stretch, 2> part;  // before and after the release
+  };
+  /// J^T r per line, the residual's power, and the residual itself where asked for.
+  struct projection {
+    std::array<Eigen::MatrixXd, 2> onto_lines;  // N x 4: Re z, Im z, t Re z, t Im z
+    std::array<double, 2> power{}, signal{};
+  };
+
+  static stretch cut(const pluck_take& take, const fir& kernel, int begin, int end) {
+    stretch s{begin / take.rate_Hz, {}};
+    for (std::size_t c = 0; c < 2; ++c) {
+      s.data[c].resize(std::max(0, end - begin));
+      for (int i = begin; i < end; ++i) {
+        double sum = 0;
+        for (int j = kernel.first; j <= kernel.last(); ++j)
+          sum += kernel.taps[static_cast<std::size_t>(j - kernel.first)] * take.force_N[c][static_cast<std::size_t>(i - j)];
+        s.data[c][i - begin] = sum;
+      }
+    }
+    return s;
+  }
+
+  [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part) const;
+  [[nodiscard]] projection project(const stretch& s, double rate_Hz, const std::vector<damped_line>& lines) const;
+  [[nodiscard]] std::array<Eigen::MatrixXd, 2> sensitivities(const Eigen::VectorXd& v, std::size_t take, std::size_t part,
+                                                            const std::vector<damped_line>& at) const;
+
+  pluck_layout layout_;
+  std::array<double, 2> ac_coupled_Hz_;
+  std::vector<pluck_layout::knowledge> prior_;
+  std::array<double, 2> noise_;
+  int partials_;
+  band limits_{0, 0};
+  std::vector<prepared> takes_;
+};
+
+/// Everything that this take's recording consists of in one stretch: the ringing partials first, then one slow line a channel
+/// (an offset; the decay of what came before where the sensor is AC coupled, H(s) = s / (s + w_c)).
+inline std::vector<damped_line> pluck_problem::lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part) const {
+  const double begin = takes_[take].part[part].begin_s, release = v[layout_.at(take, pluck_layout::release)];
+  const double strength = std::exp(v[layout_.at(take, pluck_layout::strength)]);
+  const double position = v[layout_.position(take)];
+  std::vector<damped_line> out;
+  if (part == 1) out = pluck_lines(layout_.string(v), position, 0, limits_, partials_);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const double gain = strength * std::exp(v[pluck_layout::gain_near + static_cast<int>(c)]);
+    const double offset = v[layout_.at(take, pluck_layout::offset_near + static_cast<int>(c))];
+    const double corner = 2 * std::numbers::pi * ac_coupled_Hz_[c];
+    double at_release = 0;
+    for (damped_line& line : out) {
+      if (line.residue[c] == 0.0) continue;
+      const std::complex<double> sensed = gain * line.residue[c] * (corner > 0 ? line.pole / (line.pole + corner) : 1.0);
+      at_release += sensed.real();
+      line.residue[c] = sensed * std::exp(line.pole * (begin - release));
+    }
+    damped_line slow{-corner, {}};
+    if (part == 0) slow.residue[c] = offset * std::exp(-corner * begin) + (corner > 0 ? 0.0 : gain * static_forces(position)[c]);
+    else if (corner == 0) slow.residue[c] = offset;
+    else slow.residue[c] = (offset * std::exp(-corner * release) - at_release) * std::exp(-corner * (begin - release));
+    out.push_back(slow);
+  }
+  return out;
+}
+
+inline pluck_problem::projection pluck_problem::project(const stretch& s, double rate_Hz,
+                                                        const std::vector<damped_line>& lines) const {
+  const auto N = static_cast<Eigen::Index>(lines.size());
+  Eigen::MatrixXd residues(N, 4);  // re, -im of channel 1, of channel 2
+  for (Eigen::Index n = 0; n < N; ++n)
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      const std::complex<double> r = lines[static_cast<std::size_t>(n)].residue[static_cast<std::size_t>(c)];
+      residues(n, 2 * c) = r.real();
+      residues(n, 2 * c + 1) = -r.imag();
+    }
+  projection out{{Eigen::MatrixXd::Zero(N, 4), Eigen::MatrixXd::Zero(N, 4)}, {}, {}};
+  Eigen::MatrixXd weighted(line_runner::block, 4);  // r, t r of either channel
+  line_runner(lines, 1 / rate_Hz)(s.count(), [&](std::size_t begin, std::size_t length, const auto& re, const auto& im) {
+    const auto at = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(length);
+    weighted.setZero();
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      const auto data = s.data[static_cast<std::size_t>(c)].segment(at, rows);
+      weighted.col(2 * c).head(rows) = data;
+      weighted.col(2 * c).head(rows).noalias() -= re.topRows(rows) * residues.col(2 * c);
+      weighted.col(2 * c).head(rows).noalias() -= im.topRows(rows) * residues.col(2 * c + 1);
+      weighted.col(2 * c + 1).head(rows) =
+          weighted.col(2 * c).head(rows).cwiseProduct(Eigen::VectorXd::LinSpaced(rows, double(at), double(at + rows - 1)) / rate_Hz);
+      out.power[static_cast<std::size_t>(c)] += weighted.col(2 * c).head(rows).squaredNorm();
+      out.signal[static_cast<std::size_t>(c)] += data.squaredNorm();
+    }
+    const Eigen::MatrixXd on_re = re.transpose() * weighted, on_im = im.transpose() * weighted;
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      Eigen::MatrixXd& sum = out.onto_lines[static_cast<std::size_t>(c)];
+      sum.col(0) += on_re.col(2 * c);
+      sum.col(1) += on_im.col(2 * c);
+      sum.col(2) += on_re.col(2 * c + 1);
+      sum.col(3) += on_im.col(2 * c + 1);
+    }
+  });
+  return out;
+}
+
+/// d model / d parameter in the basis of damped_lines.hpp, per channel: P x 4N. Central differences of poles and residues.
+inline std::array<Eigen::MatrixXd, 2> pluck_problem::sensitivities(const Eigen::VectorXd& v, std::size_t take, std::size_t part,
+                                                                   const std::vector<damped_line>& at) const {
+  const auto N = static_cast<Eigen::Index>(at.size());
+  std::array<Eigen::MatrixXd, 2> out{Eigen::MatrixXd::Zero(layout_.size(), 4 * N), Eigen::MatrixXd::Zero(layout_.size(), 4 * N)};
+  for (Eigen::Index p = 0; p < layout_.size(); ++p) {
+    if (!layout_.is_free(p) || (p >= layout_.at(0, 0) && (p < layout_.at(take, 0) || p >= layout_.at(take + 1, 0)))) continue;
+    const double h = layout_.step(p, v);
+    Eigen::VectorXd up = v, down = v;
+    up[p] += h;
+    down[p] -= h;
+    const std::vector<damped_line> above = lines(up, take, part), below = lines(down, take, part);
+    const auto count = static_cast<Eigen::Index>(std::min({above.size(), below.size(), at.size()}));
+    if (above.size() != at.size() || below.size() != at.size()) continue;  // a partial at the very edge of the band: weight 0
+    for (Eigen::Index n = 0; n < count; ++n)
+      for (std::size_t c = 0; c < 2; ++c) {
+        const auto i = static_cast<std::size_t>(n);
+        const std::complex<double> change = (above[i].residue[c] - below[i].residue[c]) / (2 * h);
+        const std::complex<double> drift = at[i].residue[c] * (above[i].pole - below[i].pole) / (2 * h);
+        out[c].block<1, 4>(p, 4 * n) << change.real(), -change.imag(), drift.real(), -drift.imag();
+      }
+  }
+  return out;
+}
+
+inline normal_equations pluck_problem::linearise(const Eigen::VectorXd& v) const {
+  const Eigen::Index P = layout_.size();
+  normal_equations eq{Eigen::MatrixXd::Zero(P, P), Eigen::MatrixXd::Zero(P, P), Eigen::MatrixXd::Zero(P, P), Eigen::VectorXd::Zero(P)};
+  for (std::size_t t = 0; t < takes_.size(); ++t)
+    for (std::size_t part = 0; part < 2; ++part) {
+      const stretch& s = takes_[t].part[part];
+      if (s.count() == 0) continue;
+      const std::vector<damped_line> now = lines(v, t, part);
+      const projection p = project(s, takes_[t].rate_Hz, now);
+      const Eigen::MatrixXd gram = line_gram(now, 1 / takes_[t].rate_Hz, s.count());
+      const std::array<Eigen::MatrixXd, 2> to = sensitivities(v, t, part, now);
+      Eigen::VectorXd weight(4 * static_cast<Eigen::Index>(now.size()));
+      for (std::size_t n = 0; n < now.size(); ++n)
+        weight.segment<4>(4 * static_cast<Eigen::Index>(n)).setConstant(limits_(now[n].pole.imag() / (2 * std::numbers::pi)));
+      for (std::size_t c = 0; c < 2; ++c) {
+        const double sure = 1 / (noise_[c] * noise_[c]);
+        const Eigen::MatrixXd flat = p.onto_lines[c].transpose();  // 4 x N, column-major: line by line
+        eq.cost += sure * p.power[c];
+        eq.gradient += sure * to[c] * Eigen::Map<const Eigen::VectorXd>(flat.data(), flat.size());
+        eq.hessian += sure * to[c] * gram * to[c].transpose();
+        const Eigen::MatrixXd filtered = to[c] * weight.asDiagonal();
+        eq.scatter += sure * filtered * gram * filtered.transpose();
+      }
+    }
+  for (Eigen::Index p = 0; p < P; ++p) {
+    const auto [known, sd] = prior_[static_cast<std::size_t>(p)];
+    if (!layout_.is_free(p)) eq.hessian(p, p) = 1;
+    if (sd <= 0) continue;
+    eq.prior(p, p) = 1 / (sd * sd);
+    eq.gradient[p] += (known - v[p]) / (sd * sd);
+    eq.cost += (known - v[p]) * (known - v[p]) / (sd * sd);
+  }
+  eq.hessian += eq.prior;
+  return eq;
+}
+
+inline assessment pluck_problem::assess(const Eigen::VectorXd& v) const {
+  double mean_square = 0;  // of W over the band to half the sampling rate
+  for (int i = 0; i < 1000; ++i) mean_square += std::pow(limits_(takes_.front().rate_Hz * (i + 0.5) / 2000), 2) / 1000;
+  assessment out;
+  double at_lines = 0, expected = 0, dimensions = 0;
+  std::array<double, 2> power{}, samples{}, captured{}, used{};
+  for (std::size_t t = 0; t < takes_.size(); ++t) {
+    double residual = 0, signal = 0;
+    for (std::size_t part = 0; part < 2; ++part) {
+      const stretch& s = takes_[t].part[part];
+      std::vector<damped_line> now = lines(v, t, part);
+      const projection p = project(s, takes_[t].rate_Hz, now);
+      now.resize(now.size() - 2);
+      const auto N = static_cast<Eigen::Index>(now.size());
+      const Eigen::LDLT<Eigen::MatrixXd> gram(line_gram(now, 1 / takes_[t].rate_Hz, s.count()));
+      for (std::size_t c = 0; c < 2; ++c) {
+        residual += p.power[c];
+        signal += p.signal[c];
+        power[c] += p.power[c];
+        samples[c] += static_cast<double>(s.count()) * mean_square;
+        if (N == 0) continue;
+        const Eigen::MatrixXd flat = p.onto_lines[c].topRows(N).transpose();
+        const Eigen::Map<const Eigen::VectorXd> b(flat.data(), flat.size());
+        captured[c] += b.dot(gram.solve(b));
+        for (const damped_line& line : now) used[c] += 4 * std::pow(limits_(line.pole.imag() / (2 * std::numbers::pi)), 2);
+        dimensions += 4 * static_cast<double>(N);
+      }
+    }
+    out.residual_ratio.push_back(std::sqrt(residual / signal));
+  }
+  for (std::size_t c = 0; c < 2; ++c) {
+    const double variance = std::max(1e-300, (power[c] - captured[c]) / std::max(1.0, samples[c] - used[c]));
+    out.noise[c] = std::sqrt(variance);
+    at_lines += captured[c] / variance;
+    expected += used[c];
+  }
+  out.dimensions = std::max(1.0, dimensions);
+  out.misfit = expected > 0 ? at_lines / expected : 1;
+  return out;
+}
+
+}  // namespace rosin
