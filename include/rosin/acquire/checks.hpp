@@ -1,0 +1,131 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Everything that can be wrong with a take before anything is fitted to it, each with channel, time and what to do about
+// it. Figures that were measured on the way (levels, noise, release, pitch, decay) come with it.
+//
+#pragma once
+
+#include <rosin/acquire/pluck_checks.hpp>
+
+namespace rosin {
+
+namespace detail {
+
+/// The pitch of the ringing against the declared one, and how long it lasts.
+inline void check_ringing(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
+  const double rate = view.signals->sample_rate_Hz;
+  const std::span<const double> tail{s.values.data() + start, s.values.size() - start};
+  const auto grade = view.from->has_both_forces() ? severity::error : severity::warning;
+  const double t = view.signals->time_s(start);
+  const auto found = find_ringing(tail, rate, view.fundamental_Hz, view.inharmonicity);
+  const auto quality = find_quality(tail, rate, view.fundamental_Hz);
+  if (quality) out.quality = std::min(*quality, out.quality.value_or(*quality));
+  if (quality && *quality < 25)
+    out.add(grade, "does-not-ring", s.sensor.name, t, out.duration_s,
+            "the ringing dies within a few periods (Q about " + figure(*quality, "%.0f") + ")", "free the string of what touches it");
+  if (!found) return;
+  const double off = found->pitch_Hz / view.fundamental_Hz - 1, limit = 0.015 + 2 * view.from->string.fundamental_tolerance.value_or(0.003);
+  if (found->score < 0.3)
+    out.add(severity::warning, "not-periodic", s.sensor.name, t, out.duration_s, "the ringing is no harmonic series near the declared pitch",
+            "check fundamental_Hz and what else sounds");
+  else if (std::abs(off) > limit)
+    out.add(std::abs(off) > 0.03 ? grade : severity::warning, "wrong-pitch", s.sensor.name, t, out.duration_s,
+            "rings at " + figure(found->pitch_Hz, "%.2f") + " Hz, fundamental_Hz is " + figure(view.fundamental_Hz, "%.2f") +
+                ": as if recorded at " + figure(rate / (1 + off), "%.0f") + " samples a second",
+            "check the sample rate in the file's header and fundamental_Hz");
+  out.pitch_Hz = found->pitch_Hz;
+}
+
+inline void check_tail_hum(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
+  for (auto& c : out.channels)
+    if (c.channel == s.sensor.name)
+      report_hum(out, c, *view.signals, start, find_hum({s.values.data() + start, s.values.size() - start},
+                                                        view.signals->sample_rate_Hz, view.fundamental_Hz));
+}
+
+/// With force transducers at both ends.
+inline void check_force_pluck(take_check& out, const pluck_view& view) {
+  pluck_steps steps;
+  if (!check_steps(out, view, steps)) return;
+  out.release_s = release_time(view, steps);
+  check_step(out, view, "near", steps.near);
+  check_step(out, view, "far", steps.far);
+  const bool levels = check_coupling(out, view, steps);
+  if (!out.found("inverted-channel")) check_order(out, view, steps, levels);
+  for (const auto& [name, step] : {std::pair{"near", &steps.near}, std::pair{"far", &steps.far}}) {
+    const auto& s = *view.signals->find(name);
+    const auto start = step->frame + static_cast<std::size_t>(view.signals->sample_rate_Hz / view.fundamental_Hz);
+    if (levels) check_tail(out, view, s, *step);
+    if (start + 16 >= s.values.size()) continue;
+    check_ringing(out, view, s, start);
+    check_tail_hum(out, view, s, start);
+    const std::size_t lead_in = step->frame - std::min(step->frame, start - step->frame);
+    if (lead_in > 32)
+      for (auto& c : out.channels)
+        if (c.channel == name) c.noise_rms = noise_in(s.values, lead_in);
+  }
+}
+
+/// With any other sensor.
+inline void check_other_pluck(take_check& out, const pluck_view& view) {
+  for (const auto& s : view.signals->signals) {
+    if (s.sensor.quantity == quantity::normal_force || s.sensor.quantity == quantity::bow_speed) continue;
+    const auto onset = first_onset(s.values, view.signals->sample_rate_Hz, view.fundamental_Hz);
+    if (!onset) continue;
+    out.release_s = view.signals->time_s(*onset);
+    const auto start = *onset + static_cast<std::size_t>(4 * view.signals->sample_rate_Hz / view.fundamental_Hz);
+    if (start + 16 >= s.values.size()) continue;
+    check_ringing(out, view, s, start);
+    check_tail_hum(out, view, s, start);
+  }
+}
+
+inline void check_quiet(take_check& out, const take_signals& signals, double fundamental_Hz) {
+  for (const auto& s : signals.signals)
+    for (auto& c : out.channels) {
+      if (c.channel != s.sensor.name) continue;
+      c.noise_rms = c.rms;
+      report_hum(out, c, signals, 0, find_hum(s.values, signals.sample_rate_Hz, 1e6 * fundamental_Hz));
+    }
+}
+
+/// The mean forces on the two ends share the friction's, so they have one sign, that of the bow's motion.
+inline void check_bow(take_check& out, const rig& r, const take& t) {
+  const auto mean = [&](const char* name) {
+    const auto at = std::find_if(out.channels.begin(), out.channels.end(), [&](const auto& c) { return c.channel == name; });
+    const bool dc = r.channel(name) != nullptr && !r.channel(name)->ac_coupled_Hz && at != out.channels.end();
+    return dc && std::abs(at->mean) > 0.05 * at->rms ? at->mean : 0.0;
+  };
+  const double near = mean("near"), far = mean("far");
+  const double least = 0.03 * t.normal_force_N.value_or(0);
+  const bool counts = std::min(std::abs(near), std::abs(far)) > least && near != 0 && far != 0;
+  if (counts && near < 0 && far < 0)
+    out.add(severity::warning, "bowed-backwards", "", 0, out.duration_s, "both mean forces are negative: the bow moves the other way",
+            "forces are positive the way the bow moves; turn both polarities round, or read the result with the sign turned");
+  else if (counts && near * far < 0)
+    out.add(severity::error, "inverted-channel", near < 0 ? "near" : "far", 0, out.duration_s,
+            "the mean forces on the two ends have opposite signs", "turn the polarity of one channel round");
+}
+
+}  // namespace detail
+
+/// All checks of one take.
+[[nodiscard]] inline take_check check_take(const rig& r, const take& t, const take_signals& signals) {
+  take_check out{t.name, signals.file, signals.sample_rate_Hz, signals.time_s(signals.frames()), {}, {}, {}, {}, {}};
+  bool sound = true;
+  for (const auto& s : signals.signals) sound = detail::check_signal(out, signals, s, t.kind == take_kind::quiet) && sound;
+  if (!sound || out.found("silence")) return out;
+  const rig_values values = values_of(r);
+  double inharmonicity = 0;
+  if (values.bending_stiffness_Nm2 && values.tension_N && values.length_m)
+    inharmonicity = 9.8696 * values.bending_stiffness_Nm2->value / (values.tension_N->value * std::pow(values.length_m->value, 2));
+  const detail::pluck_view view{&r, &t, &signals, r.string.fundamental_Hz, inharmonicity};
+  if (t.kind == take_kind::quiet) detail::check_quiet(out, signals, r.string.fundamental_Hz);
+  else if (t.kind == take_kind::bow) detail::check_bow(out, r, t);
+  else if (r.has_both_forces()) detail::check_force_pluck(out, view);
+  else detail::check_other_pluck(out, view);
+  return out;
+}
+
+}  // namespace rosin

@@ -1,0 +1,121 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What a pluck has to look like. Both forces fall by the breaking force F when the release reaches them, near first where
+// beta < 1/2: t_near - t_far = (2 beta - 1) / (2 f0). Before that they stand at F (1 - beta) and F beta. So an inverted
+// channel steps upwards; with swapped channels both the order of arrival and the ratio of the levels belong to 1 - beta.
+//
+#pragma once
+
+#include <rosin/acquire/release.hpp>
+#include <rosin/acquire/rig_values.hpp>
+#include <rosin/acquire/ringing.hpp>
+#include <rosin/acquire/signal_checks.hpp>
+
+namespace rosin::detail {
+
+/// What is known of a pluck when the checks begin.
+struct pluck_view {
+  const rig* from;
+  const take* what;
+  const take_signals* signals;
+  double fundamental_Hz, inharmonicity;
+};
+
+struct pluck_steps {
+  step_arrival near, far;
+  double near_level = 0, far_level = 0;  ///< before the release
+};
+
+[[nodiscard]] inline double level_before(const std::vector<double>& x, std::size_t step, double rate, double fundamental) {
+  const auto ahead = static_cast<std::size_t>(rate / fundamental);  // what runs ahead of the step is left out
+  const std::size_t end = step > 2 * ahead ? step - ahead : std::max<std::size_t>(1, step / 2);
+  double sum = 0;
+  for (std::size_t i = 0; i < end; ++i) sum += x[i];
+  return sum / static_cast<double>(end);
+}
+
+inline void check_step(take_check& out, const pluck_view& view, const std::string& channel, const step_arrival& step) {
+  const double t = view.signals->time_s(step.frame), force = view.what->force_N.value_or(0);
+  if (step.height > 0)
+    out.add(severity::error, "inverted-channel", channel, t, t, "the release steps upwards by " + figure(step.height) + " N",
+            "turn the polarity of this channel round (both: the take was plucked against the way the bow moves)");
+  const double tolerance = 0.25 + gain_tolerance_of(*view.from->channel(channel)) + force_tolerance_of(*view.what);
+  const double ratio = std::abs(step.height) / force;
+  if (force > 0 && (ratio > 1 + tolerance || ratio < 1 / (1 + tolerance)))
+    out.add(severity::warning, "wrong-scale", channel, t, t,
+            "the release steps by " + figure(std::abs(step.height)) + " N, force_N is " + figure(force),
+            "check newtons_per_full_scale, force_N and whether the wire broke at once");
+}
+
+/// The levels before the release: near zero means that the sensors do not pass them.
+inline bool check_coupling(take_check& out, const pluck_view& view, const pluck_steps& steps) {
+  const double force = view.what->force_N.value_or(std::abs(steps.near.height));
+  if (std::abs(steps.near_level) + std::abs(steps.far_level) > 0.25 * force) return true;
+  for (const char* name : {"near", "far"})
+    if (!view.from->channel(name)->ac_coupled_Hz)
+      out.add(severity::warning, "undeclared-ac-coupling", name, 0, view.signals->time_s(steps.near.frame),
+              "the deflecting force before the release does not show: the sensor seems to be AC coupled",
+              "declare ac_coupled_Hz of the channel, or record DC coupled");
+  return false;
+}
+
+inline void check_order(take_check& out, const pluck_view& view, const pluck_steps& steps, bool levels) {
+  const auto declared = view.from->position_of(*view.what);
+  const double rate = view.signals->sample_rate_Hz;
+  if (!declared || std::abs(*declared - 0.5) < 0.04) return;
+  const double lag = static_cast<double>(steps.near.frame) - static_cast<double>(steps.far.frame);
+  const double by_arrival = 0.5 + lag / rate * view.fundamental_Hz;
+  const double sum = steps.near_level + steps.far_level;
+  const double by_level = levels && sum != 0 ? steps.far_level / sum : by_arrival;
+  const double t = view.signals->time_s(steps.near.frame);
+  const auto mirrored = [&](double beta) { return std::abs(beta - (1 - *declared)) < 0.5 * std::abs(beta - *declared); };
+  const std::string figures = "the release reaches the ends as if plucked at " + figure(by_arrival, "%.3f") +
+                              (levels ? ", the levels before it say " + figure(by_level, "%.3f") : std::string{}) + ", declared is " +
+                              figure(*declared, "%.3f");
+  if (mirrored(by_arrival) && mirrored(by_level))
+    out.add(severity::error, "swapped-channels", "", 0, t, figures, "near and far are swapped, or position counts from the wrong end");
+  else if (std::abs(by_level - *declared) > 0.06 || std::abs(by_arrival - *declared) > 0.06)
+    out.add(severity::warning, "wrong-position", "", 0, t, figures, "check the position, the gains and the fundamental");
+}
+
+/// What the ends do after the ringing has been averaged out: nothing is left of the deflection.
+inline void check_tail(take_check& out, const pluck_view& view, const take_signal& s, const step_arrival& step) {
+  const auto period = view.signals->sample_rate_Hz / view.fundamental_Hz;
+  const auto left = static_cast<double>(s.values.size() - step.frame);
+  const auto count = static_cast<std::size_t>(std::floor(left / 2 / period) * period);
+  if (count == 0 || s.sensor.ac_coupled_Hz || left < 16 * period) return;
+  double mean = 0;
+  for (std::size_t i = s.values.size() - count; i < s.values.size(); ++i) mean += s.values[i] / static_cast<double>(count);
+  if (std::abs(mean) > 0.03 * std::abs(step.height))
+    out.add(severity::warning, "offset", s.sensor.name, out.duration_s - view.signals->time_s(count), out.duration_s,
+            "the ringing's mean is " + figure(mean) + " N instead of zero", "set the zero of the amplifier with the string at rest");
+}
+
+/// The release at the string, from its arrival at both ends.
+[[nodiscard]] inline double release_time(const pluck_view& view, const pluck_steps& steps) {
+  const double arrivals = view.signals->time_s(steps.near.frame) + view.signals->time_s(steps.far.frame);
+  return arrivals / 2 - 1 / (4 * view.fundamental_Hz);
+}
+
+/// True if the take holds a release.
+inline bool check_steps(take_check& out, const pluck_view& view, pluck_steps& steps) {
+  bool all = true;
+  for (const auto& [name, step, level] : {std::tuple{"near", &steps.near, &steps.near_level}, std::tuple{"far", &steps.far, &steps.far_level}}) {
+    const auto& x = view.signals->find(name)->values;
+    const double rate = view.signals->sample_rate_Hz, force = view.what->force_N.value_or(0);
+    const auto found = first_step(x, rate, view.fundamental_Hz);
+    if (found && std::abs(found->height) > 0.2 * force && std::abs(found->height) > 0) {
+      *step = *found;
+      *level = level_before(x, found->frame, rate, view.fundamental_Hz);
+      continue;
+    }
+    all = false;
+    out.add(severity::error, "no-release", name, 0, out.duration_s,
+            "no release: the largest step is " + figure(found ? std::abs(found->height) : 0) + " N, force_N is " + figure(force),
+            "check that the take holds the pluck, and the channel's scale");
+  }
+  return all;
+}
+
+}  // namespace rosin::detail
