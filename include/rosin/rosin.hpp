@@ -1,0 +1,86 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// The map of the library, in the order in which a signal meets it. Adapters to third-party packages
+// (<rosin/adapt/…>: files, other FFTs) are included one by one, by whoever has the package.
+//
+//   acquire ─▶ condition ─▶ calibrate ─▶ propagate / reconstruct ─▶ friction ─▶ simulate ─▶ report
+//   the rig,    delays,      plucks:      the string from its ends   laws of     strings     tables,
+//   checks of   resampling,  gains,       to the bow: force and      the bow's   in motion   files
+//   recordings  long FIRs    delays, B,Q  velocity there             grip
+//   ───────────────── core (stage, pipeline, outcome) · math (FFT, chirp-z, least squares) ─────────────────
+//
+#pragma once
+
+#include <rosin/version.hpp>
+
+#include <rosin/core/outcome.hpp>
+#include <rosin/core/pipeline.hpp>
+#include <rosin/core/stage.hpp>
+
+#include <rosin/math/block_transform.hpp>
+#include <rosin/math/chirp_z.hpp>
+#include <rosin/math/fft.hpp>
+#include <rosin/math/fft_policy.hpp>
+#include <rosin/math/lane_fft.hpp>
+#include <rosin/math/lanes.hpp>
+
+#include <rosin/acquire/checks.hpp>
+#include <rosin/acquire/effect_names.hpp>
+#include <rosin/acquire/finding.hpp>
+#include <rosin/acquire/hum.hpp>
+#include <rosin/acquire/pluck_checks.hpp>
+#include <rosin/acquire/recording.hpp>
+#include <rosin/acquire/release.hpp>
+#include <rosin/acquire/rig.hpp>
+#include <rosin/acquire/rig_values.hpp>
+#include <rosin/acquire/ringing.hpp>
+#include <rosin/acquire/sample_runs.hpp>
+#include <rosin/acquire/signal_checks.hpp>
+#include <rosin/acquire/spectrum_line.hpp>
+
+#include <rosin/condition/overlap_save.hpp>
+
+#include <rosin/calibrate/damped_lines.hpp>
+#include <rosin/calibrate/pluck_fit.hpp>
+#include <rosin/calibrate/pluck_layout.hpp>
+#include <rosin/calibrate/pluck_model.hpp>
+#include <rosin/calibrate/pluck_problem.hpp>
+#include <rosin/calibrate/pluck_start.hpp>
+
+#include <rosin/propagate/airy_kernel.hpp>
+#include <rosin/propagate/band.hpp>
+#include <rosin/propagate/dispersion.hpp>
+#include <rosin/propagate/fir.hpp>
+#include <rosin/propagate/string_parameters.hpp>
+#include <rosin/propagate/transmission.hpp>
+
+#include <rosin/reconstruct/bow_point.hpp>
+#include <rosin/reconstruct/consistency.hpp>
+#include <rosin/reconstruct/reconstructor.hpp>
+
+#include <rosin/friction/contact_heat.hpp>
+#include <rosin/friction/creep.hpp>
+#include <rosin/friction/elasto_plastic.hpp>
+#include <rosin/friction/enhanced_thermal.hpp>
+#include <rosin/friction/friction_curves.hpp>
+#include <rosin/friction/friction_law.hpp>
+#include <rosin/friction/thermal_plastic.hpp>
+#include <rosin/friction/velocity_curve.hpp>
+#include <rosin/friction/yield_curve.hpp>
+#include <rosin/friction/yield_curve_design.hpp>
+
+#include <rosin/simulate/converter.hpp>
+#include <rosin/simulate/modal_bank.hpp>
+#include <rosin/simulate/modal_contact.hpp>
+#include <rosin/simulate/modal_decimator.hpp>
+#include <rosin/simulate/modal_low_pass.hpp>
+#include <rosin/simulate/modal_pluck.hpp>
+#include <rosin/simulate/modal_string.hpp>
+#include <rosin/simulate/modal_stroke.hpp>
+#include <rosin/simulate/modal_take.hpp>
+#include <rosin/simulate/random_rig.hpp>
+
+#include <rosin/report/csv.hpp>
+#include <rosin/report/output_file.hpp>
+#include <rosin/report/table.hpp>

@@ -1,0 +1,17 @@
+cmake_minimum_required(VERSION 3.25)  # a -P script starts with no policies set
+# A header may call itself freestanding only if tests/embedded builds it as firmware would.
+set(include ${ROOT}/include)
+file(GLOB sources ${ROOT}/tests/embedded/*.cpp)
+set(tried "")
+foreach(source IN LISTS sources)
+  file(STRINGS ${source} lines REGEX "^#include")
+  list(APPEND tried ${lines})
+endforeach()
+file(GLOB_RECURSE headers RELATIVE ${include} ${include}/rosin/*/*.hpp)
+list(FILTER headers EXCLUDE REGEX "/detail/")
+foreach(header IN LISTS headers)
+  file(STRINGS ${include}/${header} first LIMIT_COUNT 1)
+  if(first STREQUAL "// tier: freestanding" AND NOT "#include <${header}>" IN_LIST tried)
+    message(SEND_ERROR "${header} is freestanding, but no file in tests/embedded includes it")
+  endif()
+endforeach()

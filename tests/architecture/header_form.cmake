@@ -1,0 +1,23 @@
+cmake_minimum_required(VERSION 3.25)  # a -P script starts with no policies set
+# Each header: tier, licence, a story, #pragma once, at most 300 lines; and the version is written the same twice.
+set(include ${ROOT}/include/rosin)
+file(GLOB_RECURSE headers RELATIVE ${include} ${include}/*/*.hpp)
+foreach(header IN LISTS headers)
+  file(READ ${include}/${header} text)
+  if(NOT text MATCHES "^// tier: (freestanding|hosted)\n// SPDX-License-Identifier: MIT\n//\n(//[^\n]*\n)+#pragma once\n")
+    message(SEND_ERROR "${header}: has to begin with tier, licence, a comment that says what it is, and #pragma once")
+  endif()
+  string(REGEX MATCHALL "\n" newlines "${text}")
+  list(LENGTH newlines count)
+  if(count GREATER 300)
+    message(SEND_ERROR "${header}: ${count} lines; 300 is the limit")
+  endif()
+endforeach()
+
+file(STRINGS ${include}/version.hpp numbers REGEX "define ROSIN_VERSION_(MAJOR|MINOR|PATCH) ")
+list(TRANSFORM numbers REPLACE ".* " "")
+list(JOIN numbers "." numbers)
+file(STRINGS ${include}/version.hpp text REGEX "define ROSIN_VERSION_STRING ")
+if(NOT text MATCHES "\"${numbers}\"")
+  message(SEND_ERROR "version.hpp: the string is not ${numbers}")
+endif()

@@ -1,0 +1,17 @@
+cmake_minimum_required(VERSION 3.25)  # a -P script starts with no policies set
+# rosin.hpp includes every header, save the adapters (their packages may be missing) and what is in detail/.
+set(include ${ROOT}/include)
+file(GLOB_RECURSE headers RELATIVE ${include} ${include}/rosin/*.hpp)
+list(FILTER headers EXCLUDE REGEX "/detail/|^rosin/adapt/|^rosin/rosin\\.hpp$")
+file(STRINGS ${include}/rosin/rosin.hpp lines REGEX "^#include")
+list(TRANSFORM lines REPLACE "^#include <([^>]+)>.*" "\\1")
+foreach(header IN LISTS headers)
+  if(NOT header IN_LIST lines)
+    message(SEND_ERROR "rosin.hpp does not include <${header}>")
+  endif()
+endforeach()
+foreach(header IN LISTS lines)
+  if(NOT header IN_LIST headers)
+    message(SEND_ERROR "rosin.hpp includes <${header}>, which is not there or not meant for it")
+  endif()
+endforeach()

@@ -1,0 +1,27 @@
+cmake_minimum_required(VERSION 3.25)  # a -P script starts with no policies set
+file(STRINGS ${SOURCE} first LIMIT_COUNT 1)
+if(NOT first MATCHES "^// expect: (.+)$")
+  message(FATAL_ERROR "${SOURCE}: the first line has to be '// expect: <text of the compiler's message>'")
+endif()
+set(expected "${CMAKE_MATCH_1}")
+file(STRINGS ${SOURCE} guarded REGEX "ROSIN_MUST_FAIL")
+if(NOT guarded)
+  message(FATAL_ERROR "${SOURCE}: nothing depends on ROSIN_MUST_FAIL")
+endif()
+
+list(TRANSFORM INCLUDES PREPEND -isystem OUTPUT_VARIABLE includes)
+set(compile ${CXX} -std=c++20 -fsyntax-only ${includes} ${SOURCE})
+
+execute_process(COMMAND ${compile} RESULT_VARIABLE result ERROR_VARIABLE said)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "${SOURCE} does not compile even without ROSIN_MUST_FAIL:\n${said}")
+endif()
+
+execute_process(COMMAND ${compile} -DROSIN_MUST_FAIL RESULT_VARIABLE result ERROR_VARIABLE said)
+if(result EQUAL 0)
+  message(FATAL_ERROR "${SOURCE} compiles with ROSIN_MUST_FAIL")
+endif()
+string(FIND "${said}" "${expected}" at)
+if(at EQUAL -1)
+  message(FATAL_ERROR "${SOURCE} fails, but the compiler does not say '${expected}':\n${said}")
+endif()
