@@ -33,7 +33,7 @@ struct slip_root {
 
 namespace detail {
 
-/// The root below the point of inflection, where F is concave and F(0) < 0 <= F(top): halving, 4 digits a dozen steps.
+/// The root below the point of inflection, where F is concave and F(0) < 0 <= F(top): halving.
 template <FrictionCurve Curve, class T>
 [[nodiscard]] slip_root<T> bisect_slip(const Curve& curve, T distance, T weight, T top) noexcept {
   T low = 0, high = top;
@@ -59,10 +59,27 @@ template <FrictionCurve Curve, class T = typename Curve::scalar>
       const bool crosses = curve.convex_from() > 0 && weight * curve(T(0)).value < distance;
       return crosses ? detail::bisect_slip(curve, distance, weight, u) : slip_root<T>{};
     }
-    if (abs(next - u) <= tolerance) return {next, next > 0, true};
+    if (abs(next - u) <= tolerance || abs(excess) <= tolerance / 2) return {next, true, true};
     u = next;
   }
   return {u, true, false};
+}
+
+/// One step of the rule in the header for a curve; `slipping` is the branch it is on, before and after.
+template <FrictionCurve Curve, class T = typename Curve::scalar>
+[[nodiscard]] contact_force<T> stay_on_branch(const Curve& curve, const load_line<T>& line, bool& slipping) noexcept {
+  using std::abs;
+  const T normal = line.normal_force_N, sticking = line.sticking_force();
+  if (!(normal > 0)) {
+    slipping = true;
+    return {.slipping = true};
+  }
+  if (!slipping && abs(sticking) <= curve(T(0)).value * normal) return {.force_N = sticking};
+  const auto root = largest_slip(curve, line.mobility_m_Ns * abs(sticking), line.mobility_m_Ns * normal);
+  slipping = root.exists;
+  if (!slipping) return {.force_N = sticking, .converged = root.converged};
+  const T size = normal * curve(root.speed).value;
+  return {.force_N = sticking < 0 ? -size : size, .slipping = true, .converged = root.converged};
 }
 
 /// The law for any curve.
@@ -73,18 +90,7 @@ public:
 
   constexpr explicit velocity_curve(Curve curve = {}) noexcept : curve_{curve} {}
 
-  contact_force<scalar> operator()(const load_line<scalar>& line) noexcept {
-    using std::abs;
-    if (!(line.normal_force_N > 0)) return slipping_ = true, contact_force<scalar>{.slipping = true};
-    const scalar sticking = line.sticking_force();
-    if (!slipping_ && abs(sticking) <= curve_(scalar(0)).value * line.normal_force_N) return {.force_N = sticking};
-    const scalar distance = line.mobility_m_Ns * abs(sticking);
-    const auto root = largest_slip(curve_, distance, line.mobility_m_Ns * line.normal_force_N);
-    slipping_ = root.exists;
-    if (!slipping_) return {.force_N = sticking, .converged = root.converged};
-    const scalar size = line.normal_force_N * curve_(root.speed).value;
-    return {.force_N = sticking < 0 ? -size : size, .slipping = true, .converged = root.converged};
-  }
+  contact_force<scalar> operator()(const load_line<scalar>& line) noexcept { return stay_on_branch(curve_, line, slipping_); }
 
   void reset() noexcept { slipping_ = false; }
   [[nodiscard]] bool slipping() const noexcept { return slipping_; }

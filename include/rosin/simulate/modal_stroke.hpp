@@ -63,10 +63,10 @@ void run_steps(stroke_steps& s, modal_take& take, modal_contact& contact, Law& l
     const auto state = contact.apply(answer.force_N);
     s.near[i] = state.near_N, s.far[i] = state.far_N, s.centre[i] = state.centre_m_s, s.torsion[i] = state.torsion_m_s;
     s.force[i] = answer.force_N, s.rod[i] = rod.velocity_m_s, s.temperature[i] = answer.temperature_rise_K;
-    take.unconverged += answer.converged ? 0 : 1;
-    take.slips += answer.slipping && !before ? 1 : 0;
+    take.unconverged += answer.converged ? 0U : 1U;
+    take.slips += answer.slipping && !before ? 1U : 0U;
     before = answer.slipping;
-    slipped += before && i > s.force.size() / 2 ? 1 : 0;
+    slipped += before && i > s.force.size() / 2 ? 1U : 0U;
   }
   take.slipping = static_cast<double>(slipped) / static_cast<double>(s.force.size() - s.force.size() / 2);
 }

@@ -46,6 +46,15 @@ struct modal_take {
   [[nodiscard]] std::size_t size() const noexcept { return force_near_N.size(); }
 };
 
+/// What a bowed string does once the start is over.
+enum class bowed_motion { sticking, stick_slip, sliding };
+
+/// By the second half of the take: no slip at all, both, or hardly any sticking.
+[[nodiscard]] inline bowed_motion motion_of(const modal_take& take) noexcept {
+  if (!(take.slipping > 0)) return bowed_motion::sticking;
+  return take.slipping < 0.95 ? bowed_motion::stick_slip : bowed_motion::sliding;
+}
+
 /// The first thing about the rig that cannot be simulated; empty if nothing.
 [[nodiscard]] inline std::string problem_with(const modal_rig& rig, double position) {
   const auto& s = rig.string;
