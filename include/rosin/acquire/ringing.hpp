@@ -10,6 +10,7 @@
 
 #include <rosin/acquire/spectrum_line.hpp>
 
+#include <limits>
 #include <optional>
 
 namespace rosin {
@@ -105,7 +106,7 @@ struct partial_comb {
   for (std::size_t i = 0; i < level.size(); ++i) slope += (static_cast<double>(i) - (n - 1) / 2) * level[i];
   slope *= 12 / (n * (n * n - 1));  // per block
   const double per_period = slope * sample_rate_Hz / (pitch_Hz * static_cast<double>(block));
-  return per_period < 0 ? -6.28318530717958647692 / per_period : 1e300;
+  return per_period < 0 ? -6.28318530717958647692 / per_period : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace rosin

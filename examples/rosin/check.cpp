@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+//
+// rosin check: what is wrong with the recordings of a rig, before anything is calculated from them.
+//
+#include "commands.hpp"
+#include "progress.hpp"
+#include "rig_input.hpp"
+
+#include <iostream>
+#include <memory>
+
+namespace tool {
+
+namespace {
+
+struct options {
+  std::string rig;
+  bool json = false, strict = false;
+};
+
+json to_json(const rosin::channel_check& c) {
+  json out{{"channel", c.channel}, {"unit", c.unit}, {"lowest", c.lowest}, {"highest", c.highest}, {"mean", c.mean},
+           {"rms", c.rms},         {"of_full_scale", c.of_full_scale}};
+  out["noise_rms"] = c.noise_rms ? json(*c.noise_rms) : json(nullptr);
+  out["hum"] = nullptr;
+  if (!c.hum) return out;
+  out["hum"] = {{"frequency_Hz", c.hum->frequency_Hz}, {"amplitude", c.hum->amplitude}, {"lines", json::array()}};
+  for (const auto& line : c.hum->lines)
+    out["hum"]["lines"].push_back({{"frequency_Hz", line.frequency_Hz}, {"amplitude", line.amplitude}});
+  return out;
+}
+
+json to_json(const rosin::take_check& take, const rosin::rig& rig) {
+  const auto or_null = [](const std::optional<double>& x) { return x ? json(*x) : json(nullptr); };
+  const auto* declared = rig.find_take(take.take);
+  json out{{"name", take.take}, {"kind", name_of(declared->kind)}, {"file", declared->file},
+           {"sample_rate_Hz", take.sample_rate_Hz}, {"duration_s", take.duration_s}, {"release_s", or_null(take.release_s)},
+           {"pitch_Hz", or_null(take.pitch_Hz)}, {"quality", or_null(take.quality)}};
+  out["channels"] = json::array();
+  for (const auto& c : take.channels) out["channels"].push_back(to_json(c));
+  out["findings"] = json::array();
+  for (const auto& f : take.findings) out["findings"].push_back(tool::to_json(f));
+  return out;
+}
+
+void print_text(const rosin::take_check& take, const rosin::rig& rig) {
+  using rosin::detail::figure;
+  const auto* declared = rig.find_take(take.take);
+  std::cout << take.take << " (" << name_of(declared->kind) << ", " << declared->file << "): " << figure(take.duration_s) << " s at "
+            << figure(take.sample_rate_Hz, "%.0f") << " Hz";
+  if (take.release_s) std::cout << ", released at " << figure(*take.release_s, "%.5f") << " s";
+  if (take.pitch_Hz) std::cout << ", rings at " << figure(*take.pitch_Hz, "%.2f") << " Hz";
+  std::cout << '\n';
+  for (const auto& c : take.channels) {
+    std::cout << "  " << c.channel << ": " << figure(c.lowest) << " ... " << figure(c.highest) << " " << c.unit << ", "
+              << figure(100 * c.of_full_scale, "%.0f") << " % of full scale";
+    if (c.noise_rms) std::cout << ", noise " << figure(*c.noise_rms) << " " << c.unit << " rms";
+    std::cout << '\n';
+  }
+  for (const auto& f : take.findings) std::cout << "  " << sentence(rig, f) << '\n';
+}
+
+struct tally {
+  std::size_t errors = 0, warnings = 0;
+};
+
+tally count(const std::vector<rosin::take_check>& takes) {
+  tally out;
+  for (const auto& take : takes)
+    for (const auto& f : take.findings) {
+      out.errors += f.level == rosin::severity::error ? 1 : 0;
+      out.warnings += f.level == rosin::severity::warning ? 1 : 0;
+    }
+  return out;
+}
+
+void print_result(const options& given, const provenance& from, const rosin::rig_folder& folder, const std::vector<rosin::take_check>& takes,
+                  const tally& found) {
+  const auto assumed = rosin::values_of(folder.rig).assumed;
+  if (given.json) {
+    json out{{"schema", 1}, {"provenance", from.to_json()}, {"rig", folder.rig.title.value_or(folder.rig.file)}, {"errors", found.errors}, {"warnings", found.warnings}};
+    out["takes"] = json::array();
+    for (const auto& take : takes) out["takes"].push_back(to_json(take, folder.rig));
+    out["notes"] = folder.notes;
+    out["assumed"] = assumed;
+    return print(out);
+  }
+  for (const auto& take : takes) print_text(take, folder.rig);
+  for (const auto& note : folder.notes) std::cout << "note: " << note << '\n';
+  for (const auto& line : assumed) std::cout << "assumed: " << line << '\n';
+  std::cout << found.errors << " error(s), " << found.warnings << " warning(s)\n";
+}
+
+exit_code run(const options& given, provenance from) {
+  const auto folder = open_rig(given.rig, from);
+  if (!folder) return fail(folder.error(), given.json);
+  std::vector<rosin::take_check> takes;
+  std::string unreadable;
+  {
+    progress bar{"checking", folder->rig.takes.size()};
+    for (const auto& take : folder->rig.takes) {
+      auto one = read_take(folder->rig, take, from);
+      if (one) takes.push_back(std::move(one->check));
+      else unreadable += (unreadable.empty() ? "" : "\n") + one.error();
+      bar.step();
+    }
+  }
+  if (!unreadable.empty()) return fail(unreadable, given.json);
+  const tally found = count(takes);
+  print_result(given, from, *folder, takes, found);
+  return found.errors > 0 || (given.strict && found.warnings > 0) ? exit_code::finding : exit_code::ok;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, exit_code& result) {
+  auto given = std::make_shared<options>();
+  CLI::App* command = app.add_subcommand("check", "Find what is wrong with the recordings of a rig");
+  command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
+  command->add_flag("--strict", given->strict, "Exit with 1 on warnings as well");
+  add_json_option(*command, given->json);
+  command->footer(
+      "Reads every take and looks for clipping, lost samples, silence, offset, noise, mains hum, swapped or inverted\n"
+      "channels, a wrong sample rate or pitch, and plucks that do not ring. Each finding names file, channel and time,\n"
+      "and says what to do. Defaults that a calculation would use are listed too.");
+  command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
+}
+
+}  // namespace tool

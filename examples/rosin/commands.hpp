@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+//
+// The subcommands of the tool, one source file each. How to add one stands in main.cpp.
+//
+#pragma once
+
+#include "command_line.hpp"
+
+namespace tool {
+
+void add_check(CLI::App& app, exit_code& result);
+void add_validate(CLI::App& app, exit_code& result);
+
+}  // namespace tool

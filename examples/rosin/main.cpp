@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+//
+// rosin, the command line tool. To add a subcommand `name`:
+//
+//   1. name.cpp beside this file defines  void tool::add_name(CLI::App& app, exit_code& result).  It adds the subcommand
+//      with its options to `app` and sets a callback that does the work and puts its outcome into `result`:
+//
+//          struct options { std::string rig; bool json = false; };
+//          void add_name(CLI::App& app, exit_code& result) {
+//            auto given = std::make_shared<options>();
+//            CLI::App* command = app.add_subcommand("name", "What it does, in one line");
+//            command->add_option("RIG", given->rig, "Rig file, or the folder that holds it")->required();
+//            add_json_option(*command, given->json);
+//            command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
+//          }
+//
+//   2. commands.hpp declares it, and the list below names it. The build finds the source by itself.
+//
+// Shared: command_line.hpp (exit codes, fail(), --json, --out/--format/--force), provenance.hpp (version, inputs with
+// checksums, options), rig_input.hpp (rig and takes, read and checked), progress.hpp.
+// Rules: results to standard output or --out, messages to standard error; --json wherever a program could read the result;
+// nothing is overwritten without --force; exit 0 done, 1 something was found, 2 bad input or usage.
+//
+#include "commands.hpp"
+
+#include <rosin/version.hpp>
+
+#include <exception>
+#include <iostream>
+
+namespace {
+
+tool::exit_code run(int argc, char** argv) {
+  auto result = tool::exit_code::ok;
+  CLI::App app{"Friction force and string velocity under the bow, from the forces at the string's ends", "rosin"};
+  app.set_version_flag("--version", "rosin " ROSIN_VERSION_STRING);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  app.footer("rosin COMMAND --help explains a command.\nExit status: 0 done, 1 something was found, 2 bad input or usage.");
+  tool::add_check(app, result);
+#if ROSIN_HAS_VALIJSON
+  tool::add_validate(app, result);
+#endif
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? tool::exit_code::ok : tool::exit_code::bad_input;
+  }
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return static_cast<int>(run(argc, argv));
+  } catch (const std::exception& error) {
+    std::cerr << "rosin: " << error.what() << '\n';
+    return static_cast<int>(tool::exit_code::bad_input);
+  }
+}

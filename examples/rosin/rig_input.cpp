@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "rig_input.hpp"
+
+namespace tool {
+
+rosin::outcome<rosin::rig_folder> open_rig(const std::string& path, provenance& from) {
+  auto folder = rosin::open_rig_folder(path);
+  if (!folder) return folder;
+  if (const auto why = from.add_input(folder->rig.file)) return *why;
+  for (const auto* end : {&folder->rig.near, &folder->rig.far})
+    if (*end && (*end)->kind == rosin::termination::form::table)
+      if (const auto why = from.add_input(folder->rig.path_of((*end)->file))) return *why;
+  return folder;
+}
+
+rosin::outcome<checked_take> read_take(const rosin::rig& rig, const rosin::take& take, provenance& from) {
+  auto signals = rosin::load_take(rig, take);
+  if (!signals) return rosin::failure{signals.error()};
+  if (const auto why = from.add_input(rig.path_of(take.file))) return *why;
+  auto check = rosin::check_take(rig, take, *signals);
+  return checked_take{*std::move(signals), std::move(check)};
+}
+
+rosin::outcome<checked_take> read_sound_take(const rosin::rig& rig, const rosin::take& take, provenance& from) {
+  auto out = read_take(rig, take, from);
+  if (!out || !rosin::has_error(out->check.findings)) return out;
+  std::string all;
+  for (const auto& finding : out->check.findings)
+    if (finding.level == rosin::severity::error) all += (all.empty() ? "" : "\n") + sentence(rig, finding);
+  return rosin::failure{all};
+}
+
+std::string sentence(const rosin::rig& rig, const rosin::finding& finding) {
+  const rosin::take* take = rig.find_take(finding.take);
+  std::string out = take != nullptr ? take->file + ": " : std::string{};
+  out += "take " + finding.take;
+  if (take != nullptr) out += " (" + rig.file + ":" + std::to_string(take->line) + ")";
+  if (!finding.channel.empty()) out += ", channel " + finding.channel;
+  out += ", " + rosin::detail::figure(finding.start_s, "%.4f");
+  if (finding.end_s > finding.start_s) out += " to " + rosin::detail::figure(finding.end_s, "%.4f");
+  return out + " s: " + name_of(finding.level) + ": " + finding.what + "; " + finding.advice;
+}
+
+json to_json(const rosin::finding& finding) {
+  return {{"severity", name_of(finding.level)}, {"kind", finding.kind},
+          {"take", finding.take},               {"channel", finding.channel.empty() ? json(nullptr) : json(finding.channel)},
+          {"time_s", {finding.start_s, finding.end_s}}, {"what", finding.what},
+          {"advice", finding.advice}};
+}
+
+rosin::outcome<rosin::string_parameters> nominal_string(const rosin::rig& rig, std::vector<std::string>& assumed) {
+  const auto values = rosin::values_of(rig);
+  if (!values.length_m || !values.tension_N || !values.impedance_Ns_m || !values.wave_speed_m_s)
+    return rosin::failure{rig.file + ": string: length_m and tension_N are needed for a result in SI units"};
+  rosin::string_parameters out;
+  out.length_m = values.length_m->value;
+  out.fundamental_Hz = values.fundamental_Hz.value;
+  out.tension_N = values.impedance_Ns_m->value * *values.wave_speed_m_s;
+  if (rig.string.impedance_Ns_m)
+    assumed.push_back(rosin::detail::sentence("tension_N", out.tension_N, "from impedance, length and fundamental"));
+  if (values.bending_stiffness_Nm2) out.bending_stiffness_Nm2 = values.bending_stiffness_Nm2->value;
+  else assumed.push_back("bending_stiffness_Nm2 = 0, unknown");
+  out.loss = {values.quality, values.loss_internal_s, values.loss_air_sqrt_Hz};
+  return out;
+}
+
+}  // namespace tool
