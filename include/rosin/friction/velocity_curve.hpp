@@ -59,7 +59,7 @@ template <FrictionCurve Curve, class T = typename Curve::scalar>
       const bool crosses = curve.convex_from() > 0 && weight * curve(T(0)).value < distance;
       return crosses ? detail::bisect_slip(curve, distance, weight, u) : slip_root<T>{};
     }
-    if (abs(next - u) <= tolerance || abs(excess) <= tolerance / 2) return {next, true, true};
+    if (abs(next - u) <= tolerance || abs(excess) <= tolerance / 2) return {u, true, true};
     u = next;
   }
   return {u, true, false};
