@@ -1,0 +1,103 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// One standard deviation of force and velocity, sample by sample, from three sources that do not know of each other:
+//
+//     var f(t) = sum_j noise_j^2 sum_n h_j[n]^2            sensor noise through the kernels
+//              + s(t)' C s(t)                              the calibration's covariance, s = d f / d theta
+//              + max(0, var(f_near - f_far) - expected)/4  what the two versions differ by beyond both
+//
+// These are random: they change the waveform. The common scale (strength of the wires, impedance) is systematic and is kept
+// apart as a relative standard deviation.
+//
+#pragma once
+
+#include <rosin/reconstruct/sensitivity.hpp>
+
+#include <cmath>
+
+namespace rosin {
+
+/// Standard deviations of a reconstruction; vectors are as long as the take.
+struct reconstruction_uncertainty {
+  std::vector<double> force_sd_N, velocity_sd_m_s;
+  double force_noise_N = 0, velocity_noise_m_s = 0;    ///< from sensor noise alone
+  double force_model_N = 0, velocity_model_m_s = 0;    ///< from what the two versions disagree in
+  double force_scale = 0, velocity_scale = 0;          ///< systematic, relative
+};
+
+namespace detail {
+
+/// Standard deviation of a combination of outputs for white noise in both inputs.
+[[nodiscard]] inline double noise_through(const std::vector<fir>& kernels, std::array<double, 4> of_output,
+                                          const std::array<double, 2>& noise) {
+  double variance = 0;
+  for (std::size_t input = 0; input < 2; ++input) {
+    int first = 0, last = 0;
+    for (std::size_t p = 0; p < 4; ++p) {
+      first = std::min(first, kernels[2 * p + input].first);
+      last = std::max(last, kernels[2 * p + input].last());
+    }
+    std::vector<double> sum(static_cast<std::size_t>(last - first + 1), 0.0);
+    for (std::size_t p = 0; p < 4; ++p)
+      for (std::size_t j = 0; j < kernels[2 * p + input].taps.size(); ++j)
+        sum[static_cast<std::size_t>(kernels[2 * p + input].first - first) + j] += of_output[p] * kernels[2 * p + input].taps[j];
+    double power = 0;
+    for (const double tap : sum) power += tap * tap;
+    variance += noise[input] * noise[input] * power;
+  }
+  return std::sqrt(variance);
+}
+
+/// rms over the known samples of the difference of two versions.
+[[nodiscard]] inline double rms_difference(const std::vector<double>& a, const std::vector<double>& b, sample_range known) {
+  double power = 0, mean = 0;
+  const double count = std::max<double>(1, static_cast<double>(known.end - known.begin));
+  for (std::size_t i = known.begin; i < known.end; ++i) {
+    power += (a[i] - b[i]) * (a[i] - b[i]);
+    mean += a[i] - b[i];
+  }
+  return std::sqrt(std::max(0.0, power / count - (mean / count) * (mean / count)));
+}
+
+}  // namespace detail
+
+/// `noise_N`: of the calibrated channels. `motion` is what the reconstructor made of the same take.
+template <class Physics = full_physics>
+[[nodiscard]] reconstruction_uncertainty uncertainty(const calibration& c, const bow_motion<double>& motion,
+                                                     const reconstruction_sensitivity& s, const std::array<double, 2>& noise_N,
+                                                     const band& limits, double rate_Hz) {
+  const std::vector<fir> kernels = bow_point_kernels<Physics>(c.at, limits, rate_Hz, 1e-4);
+  reconstruction_uncertainty out;
+  out.force_noise_N = detail::noise_through(kernels, {0.5, 0.5, 0, 0}, noise_N);
+  out.velocity_noise_m_s = detail::noise_through(kernels, {0, 0, 0.5, 0.5}, noise_N);
+  out.force_scale = c.scale_relative_sd;
+  out.velocity_scale = std::hypot(c.scale_relative_sd, c.impedance_relative_sd);
+
+  const Eigen::VectorXd of_force = (s.force * c.covariance).cwiseProduct(s.force).rowwise().sum();
+  const Eigen::VectorXd of_velocity = (s.velocity * c.covariance).cwiseProduct(s.velocity).rowwise().sum();
+  const auto known = [&](const Eigen::VectorXd& v) {
+    return v.segment(static_cast<Eigen::Index>(motion.known.begin), static_cast<Eigen::Index>(motion.known.end - motion.known.begin)).mean();
+  };
+  const Eigen::VectorXd of_difference = (s.difference * c.covariance).cwiseProduct(s.difference).rowwise().sum();
+  const double seen = detail::rms_difference(motion.force_near_N, motion.force_far_N, motion.known);
+  const double noise = detail::noise_through(kernels, {1, -1, 0, 0}, noise_N);
+  if (motion.known.end > motion.known.begin) {
+    // Half of what the versions differ by beyond noise and calibration: each is wrong by about that, either way.
+    out.force_model_N = 0.5 * std::sqrt(std::max(0.0, seen * seen - noise * noise - known(of_difference)));
+    const double seen_v = detail::rms_difference(motion.velocity_near_m_s, motion.velocity_far_m_s, motion.known);
+    out.velocity_model_m_s = seen > 0 ? out.force_model_N * seen_v / seen : 0.0;
+  }
+  const auto n = static_cast<std::size_t>(of_force.size());
+  out.force_sd_N.resize(n);
+  out.velocity_sd_m_s.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    out.force_sd_N[i] = std::sqrt(out.force_noise_N * out.force_noise_N + out.force_model_N * out.force_model_N + std::max(0.0, of_force[k]));
+    out.velocity_sd_m_s[i] = std::sqrt(out.velocity_noise_m_s * out.velocity_noise_m_s +
+                                       out.velocity_model_m_s * out.velocity_model_m_s + std::max(0.0, of_velocity[k]));
+  }
+  return out;
+}
+
+}  // namespace rosin
