@@ -6,8 +6,8 @@ set(ROSIN_FFT "" CACHE STRING "FFT backend of the tool: eigen, pocketfft or fftw
 set_property(CACHE ROSIN_FFT PROPERTY STRINGS "" eigen pocketfft fftw)
 
 # What an #include line of a source file says about the package behind it.
-set(rosin_packages      tomlplusplus nlohmann_json sndfile pocketfft           fftw       matio   CLI11   valijson)
-set(rosin_include_marks "<toml[+][+]/" "<nlohmann/" "<sndfile" "pocketfft_hdronly" "<fftw3[.]h" "<matio[.]h" "<CLI/" "<valijson/")
+set(rosin_packages      tomlplusplus nlohmann_json sndfile pocketfft           fftw       matio   CLI11   valijson      openssl)
+set(rosin_include_marks "<toml[+][+]/" "<nlohmann/" "<sndfile" "pocketfft_hdronly" "<fftw3[.]h" "<matio[.]h" "<CLI/" "<valijson/" "<openssl/")
 
 function(rosin_add_package name)
   add_library(rosin_package_${name} INTERFACE)
@@ -21,6 +21,11 @@ foreach(config IN ITEMS tomlplusplus nlohmann_json CLI11)
     rosin_add_package(${config} ${config}::${config})
   endif()
 endforeach()
+
+find_package(OpenSSL QUIET COMPONENTS Crypto)
+if(OPENSSL_FOUND)
+  rosin_add_package(openssl OpenSSL::Crypto)
+endif()
 
 # Packages that are a header and perhaps libraries.
 function(rosin_find_plain_package name header)
@@ -49,8 +54,11 @@ rosin_find_plain_package(fftw fftw3.h LIBRARIES fftw3 fftw3f)
 rosin_find_plain_package(matio matio.h LIBRARIES matio)
 rosin_find_plain_package(valijson valijson/validator.hpp)
 
-# All that was found, for whoever may use any of it.
+# All that was found, for whoever may use any of it; only what is used is loaded.
 add_library(rosin_packages INTERFACE)
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
+  target_link_options(rosin_packages INTERFACE LINKER:--as-needed)
+endif()
 set(rosin_packages_missing "")
 foreach(name IN LISTS rosin_packages)
   if(TARGET rosin_package_${name})
@@ -77,6 +85,17 @@ function(rosin_missing_for out source)
   endforeach()
   list(REMOVE_DUPLICATES missing)
   set(${out} ${missing} PARENT_SCOPE)
+endfunction()
+
+# Sets `out` to the packages that any of the files needs and that are not there.
+function(rosin_missing_for_any out)
+  set(all "")
+  foreach(source IN LISTS ARGN)
+    rosin_missing_for(missing ${source})
+    list(APPEND all ${missing})
+  endforeach()
+  list(REMOVE_DUPLICATES all)
+  set(${out} ${all} PARENT_SCOPE)
 endfunction()
 
 # Removes from the list `sources` the files whose packages are missing, and names them.
