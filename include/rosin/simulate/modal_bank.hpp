@@ -76,6 +76,18 @@ public:
   [[nodiscard]] double near_share(std::size_t j) const noexcept { return near_share_[j]; }
   [[nodiscard]] double far_share(std::size_t j) const noexcept { return far_share_[j]; }
 
+  /// Kinetic and elastic energy of all modes at the end of the step under way; exact where the last force was zero.
+  [[nodiscard]] double energy_J() const noexcept {
+    double energy = 0;
+    for (const auto& [mode, lane_index, i] : placed_) {
+      const lane& l = lanes_[lane_index];
+      const auto p = mode.pole();
+      const double elastic = (p.imag() * l.im[i] + p.real() * l.re[i]) / mode.omega_rad_s;  // w q
+      energy += mode.mass_kg / 2 * (l.re[i] * l.re[i] + elastic * elastic);
+    }
+    return energy;
+  }
+
   /// State at the end of the step under way if no force acts there.
   [[nodiscard]] const bank_reading<Ports>& free() const noexcept { return free_; }
 
@@ -101,6 +113,11 @@ private:
     pack end_re = pack::Zero(), end_im = pack::Zero();        // state to force on the near end
     std::array<pack, ports> shape{};
   };
+  struct placed_mode {
+    string_mode mode;
+    std::size_t lane;
+    Eigen::Index index;
+  };
   struct accumulator {
     std::array<pack, ports> velocity{};
     pack end = pack::Zero();
@@ -124,7 +141,8 @@ private:
         lanes_.emplace_back();
         lanes_.back().shape.fill(pack::Zero());
       }
-      set(lanes_.back(), static_cast<Eigen::Index>(n % width), *modes[n], damping, positions, h);
+      placed_.push_back({*modes[n], lanes_.size() - 1, static_cast<Eigen::Index>(n % width)});
+      set(lanes_.back(), placed_.back().index, *modes[n], damping, positions, h);
     }
   }
 
@@ -159,6 +177,7 @@ private:
   }
 
   std::vector<lane> lanes_;
+  std::vector<placed_mode> placed_;
   std::size_t odd_ = 0;
   bank_reading<Ports> free_{};
   std::array<values, ports> mobility_{};

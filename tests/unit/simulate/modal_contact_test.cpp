@@ -1,0 +1,70 @@
+#include <rosin/simulate/modal_contact.hpp>
+
+#include <doctest/doctest.h>
+
+namespace {
+
+rosin::modal_rig soft_rig(double quality) {
+  return {.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = quality}},
+          .torsion = {7, 3.5, 15}};
+}
+
+constexpr double step = 1 / (4 * 128e3);
+
+}  // namespace
+
+TEST_CASE("a lasting force is shared by the ends as a lever shares it, whatever the number of modes") {
+  for (const double limit : {70e3, 200e3}) {
+    rosin::modal_contact contact{soft_rig(2), 0.3, limit, step};
+    rosin::modal_contact_state state;
+    for (int i = 0; i < 6000; ++i) state = contact.apply(0.5);
+    CHECK(state.near_N + contact.left_out().near * 0.5 == doctest::Approx(0.5 * 0.7));
+    CHECK(state.far_N + contact.left_out().far * 0.5 == doctest::Approx(0.5 * 0.3));
+    CHECK(std::abs(state.centre_m_s + state.torsion_m_s) < 1e-5);
+  }
+}
+
+TEST_CASE("the load line foretells the surface's speed") {
+  rosin::modal_contact contact{soft_rig(1000), 0.3, 200e3, step};
+  double last = 0;
+  for (int i = 0; i < 500; ++i) {
+    const rosin::rod_state rod{0.2, 0.3};
+    const auto line = contact.line(rod);
+    const double force = 0.3 * std::sin(0.05 * i), predicted = line.slip(force) + rod.velocity_m_s;
+    const auto state = contact.apply(force);
+    const double rest = (contact.left_out().centre_m_N + contact.left_out().torsion_m_N) * (force - last) / step;
+    CHECK(state.centre_m_s + state.torsion_m_s + rest == doctest::Approx(predicted).epsilon(1e-9));
+    last = force;
+  }
+}
+
+TEST_CASE("a string that does not turn has no torsional speed, and yields less") {
+  auto rig = soft_rig(1000);
+  const rosin::modal_contact turning{rig, 0.3, 200e3, step};
+  rig.torsion = {};
+  rosin::modal_contact stiff{rig, 0.3, 200e3, step};
+  CHECK(stiff.mobility_m_Ns() < turning.mobility_m_Ns());
+  CHECK(stiff.left_out().torsion_m_N == 0.0);
+  for (int i = 0; i < 10; ++i) CHECK(stiff.apply(1.0).torsion_m_s == 0.0);
+}
+
+TEST_CASE("on an ideal string the first steps see half the reciprocal impedance, transverse and torsional") {
+  auto rig = soft_rig(1e6);
+  rig.string.bending_stiffness_Nm2 = 0;
+  rosin::modal_contact contact{rig, 0.3, 0.49 / step, step};
+  double velocity = 0;
+  for (int i = 0; i < 30; ++i) {  // before the first reflection, torsion's, returns after 65 us
+    const auto state = contact.apply(1.0);
+    if (i >= 10) velocity += (state.centre_m_s + state.torsion_m_s) / 20;
+  }
+  const double Z = rig.string.impedance_Ns_m();
+  CHECK(velocity == doctest::Approx((1 + 1 / 3.5) / (2 * Z)).epsilon(0.02));
+}
+
+TEST_CASE("a positive force turns and moves the surface forwards") {
+  rosin::modal_contact contact{soft_rig(1000), 0.3, 200e3, step};
+  rosin::modal_contact_state state;
+  for (int i = 0; i < 20; ++i) state = contact.apply(1.0);
+  CHECK(state.centre_m_s > 1);
+  CHECK(state.torsion_m_s > 0.3);
+}
