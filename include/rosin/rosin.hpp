@@ -39,9 +39,13 @@
 #include <rosin/acquire/signal_checks.hpp>
 #include <rosin/acquire/spectrum_line.hpp>
 
+#include <rosin/condition/ac_coupling.hpp>
 #include <rosin/condition/overlap_save.hpp>
 
+#include <rosin/calibrate/calibration.hpp>
 #include <rosin/calibrate/damped_lines.hpp>
+#include <rosin/calibrate/partial_baseband.hpp>
+#include <rosin/calibrate/partial_line.hpp>
 #include <rosin/calibrate/pluck_fit.hpp>
 #include <rosin/calibrate/pluck_layout.hpp>
 #include <rosin/calibrate/pluck_model.hpp>
@@ -50,14 +54,21 @@
 
 #include <rosin/propagate/airy_kernel.hpp>
 #include <rosin/propagate/band.hpp>
+#include <rosin/propagate/bow_point.hpp>
 #include <rosin/propagate/dispersion.hpp>
 #include <rosin/propagate/fir.hpp>
 #include <rosin/propagate/string_parameters.hpp>
 #include <rosin/propagate/transmission.hpp>
 
-#include <rosin/reconstruct/bow_point.hpp>
+#include <rosin/reconstruct/bow_point_transfer.hpp>
 #include <rosin/reconstruct/consistency.hpp>
+#include <rosin/reconstruct/dc_level.hpp>
+#include <rosin/reconstruct/fine_tune.hpp>
+#include <rosin/reconstruct/periodic_part.hpp>
+#include <rosin/reconstruct/periodic_reconstruction.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>
+#include <rosin/reconstruct/sensitivity.hpp>
+#include <rosin/reconstruct/uncertainty.hpp>
 
 #include <rosin/friction/contact_heat.hpp>
 #include <rosin/friction/creep.hpp>
@@ -82,5 +93,6 @@
 #include <rosin/simulate/random_rig.hpp>
 
 #include <rosin/report/csv.hpp>
+#include <rosin/report/npy.hpp>
 #include <rosin/report/output_file.hpp>
 #include <rosin/report/table.hpp>

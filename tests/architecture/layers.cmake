@@ -10,9 +10,8 @@ endforeach()
 foreach(folder IN ITEMS torsion simulate diagnose)
   set(${folder}_may_include ${common} propagate friction)
 endforeach()
-foreach(folder IN ITEMS calibrate reconstruct)
-  set(${folder}_may_include ${common} condition propagate friction)
-endforeach()
+set(calibrate_may_include ${common} condition propagate friction)
+set(reconstruct_may_include ${calibrate_may_include} calibrate)
 # An adapter joins the library and one third-party package; nothing includes an adapter.
 set(adapt_may_include ${common} acquire condition friction propagate report calibrate reconstruct torsion simulate diagnose)
 
