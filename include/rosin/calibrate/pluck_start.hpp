@@ -25,7 +25,7 @@ namespace detail {
 /// Fraction of a sample from a parabola through three values around a maximum.
 inline double vertex(double before, double at, double after) {
   const double bend = before - 2 * at + after;
-  return bend < 0 ? 0.5 * (before - after) / bend : 0.0;
+  return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -1.0, 1.0) : 0.0;
 }
 
 /// Lag in [first, last] at which x, from `begin` on, is most like itself.

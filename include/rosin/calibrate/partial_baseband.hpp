@@ -1,0 +1,83 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// One line of a long recording, brought down to zero frequency and a low rate. The whole record is transformed once; the bins
+// around a centre, weighted by a smooth window W, are transformed back by themselves:
+//
+//     z(t) = 2 sum_{|k - k0| <= m} W((k - k0) df) X[k] exp(2 pi i (k - k0) df t) / N,      x = A cos(2 pi f t + p)  ->
+//     z(t) = A exp(i p) exp(2 pi i (f - k0 df) t)
+//
+// That is exact heterodyning, filtering and decimation in one, without the design of a filter per line. W is 1 to 0.6 of the
+// half width and falls to 0 with three continuous derivatives (the polynomial of propagate/band.hpp), so that an edge of the
+// recording is forgotten after about two inverse half widths.
+//
+#pragma once
+
+#include <rosin/math/fft.hpp>
+#include <rosin/propagate/band.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace rosin {
+
+/// A line and its surroundings at zero frequency: samples from the start of the recording on.
+struct baseband_record {
+  std::vector<std::complex<double>> samples;
+  double rate_Hz = 0;
+  double centre_Hz = 0;   ///< the frequency that became zero
+  double flat_to_Hz = 0;  ///< gain 1 for |f - centre| up to here
+};
+
+/// All basebands of one recording have one half width and one rate. Precondition: a signal that is not empty.
+class baseband_bank {
+public:
+  baseband_bank(std::span<const double> signal, double rate_Hz, double half_width_Hz) : rate_Hz_{rate_Hz} {
+    half_width_Hz_ = std::min(half_width_Hz, rate_Hz / 4);
+    const auto pause = static_cast<std::size_t>(std::ceil(4 * rate_Hz / half_width_Hz_));  // so that the end does not wrap to the start
+    length_ = fast_size(signal.size() + pause);
+    std::vector<double> padded(length_, 0.0);
+    std::copy(signal.begin(), signal.end(), padded.begin());
+    spectrum_.resize(length_ / 2 + 1);
+    eigen_fft<double>{length_}.forward(padded.data(), spectrum_.data());
+    df_Hz_ = rate_Hz / static_cast<double>(length_);
+    short_length_ = fast_size(2 * static_cast<std::size_t>(half_width_Hz_ / df_Hz_) + 2);
+    kept_ = static_cast<std::size_t>(static_cast<double>(short_length_) * static_cast<double>(signal.size()) / static_cast<double>(length_));
+  }
+
+  [[nodiscard]] baseband_record around(double frequency_Hz) const {
+    const auto centre = static_cast<std::ptrdiff_t>(std::lround(frequency_Hz / df_Hz_));
+    const auto reach = static_cast<std::ptrdiff_t>(half_width_Hz_ / df_Hz_);
+    const auto size = static_cast<std::ptrdiff_t>(short_length_);
+    const band window{flat_part * half_width_Hz_, half_width_Hz_};
+    std::vector<std::complex<double>> bins(short_length_), samples(short_length_);
+    for (std::ptrdiff_t k = -reach; k <= reach; ++k)
+      if (centre + k > 0 && centre + k < static_cast<std::ptrdiff_t>(spectrum_.size()))
+        bins[static_cast<std::size_t>((k + size) % size)] = scale() * window(static_cast<double>(k) * df_Hz_) *
+                                                            spectrum_[static_cast<std::size_t>(centre + k)];
+    eigen_fft<std::complex<double>>{short_length_}.inverse(bins.data(), samples.data());
+    samples.resize(kept_);
+    return {std::move(samples), rate(), static_cast<double>(centre) * df_Hz_, flat_part * half_width_Hz_};
+  }
+
+  /// Time after which an edge of the recording is forgotten.
+  [[nodiscard]] double settling_s() const noexcept { return 2 / half_width_Hz_; }
+  [[nodiscard]] double rate() const noexcept {
+    return rate_Hz_ * static_cast<double>(short_length_) / static_cast<double>(length_);
+  }
+
+private:
+  static constexpr double flat_part = 0.6;
+
+  [[nodiscard]] double scale() const noexcept { return 2 * static_cast<double>(short_length_) / static_cast<double>(length_); }
+
+  double rate_Hz_, half_width_Hz_ = 0, df_Hz_ = 0;
+  std::size_t length_ = 0, short_length_ = 0, kept_ = 0;
+  std::vector<std::complex<double>> spectrum_;
+};
+
+}  // namespace rosin
