@@ -63,7 +63,9 @@ namespace detail {
   }
   if (power.empty()) return std::nullopt;
   const double strongest = *std::max_element(power.begin(), power.end());
-  if (strongest <= 0) return std::nullopt;
+  double largest = 0;
+  for (const double v : x) largest = std::max(largest, std::abs(v));
+  if (strongest <= 1e-20 * largest * largest * static_cast<double>(block)) return std::nullopt;  // rounding
   std::size_t at = 0;
   while (power[at] < strongest / 10) ++at;
   return at * block;

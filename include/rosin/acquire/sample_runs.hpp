@@ -6,7 +6,7 @@
 //
 // A smooth maximum is flat for some samples too (within one step), but it is entered and left slowly; a rail is hit at
 // speed. A frozen stretch counts only if so many equal samples in a row are improbable in this signal, if the signal moves
-// before and after, and if it jumps into the stretch or out of it.
+// before and after, and if it is entered and left at speed or by a jump.
 //
 #pragma once
 
@@ -107,7 +107,7 @@ namespace detail {
   return samples > 0 ? repeats / samples : 1.0;
 }
 
-/// The span is entered or left by a jump that the motion around it does not explain.
+/// The span is entered and left in a way that the motion around it does not explain.
 [[nodiscard]] inline bool is_frozen(const std::vector<double>& x, const sample_span& s, double step, double chance) {
   constexpr std::size_t around = 64;
   if (s.first == 0 || s.end() >= x.size()) return false;
@@ -118,7 +118,9 @@ namespace detail {
   const auto [in, out] = edge_jumps(x, s);
   const bool zeroed = x[s.first] == 0.0 && s.count >= 2 && std::min(in, out) >= 8 * most;
   const double by_chance = static_cast<double>(x.size()) * std::pow(chance, static_cast<double>(s.count - 1));
-  return zeroed || (by_chance < 1e-3 && s.count >= 4 && std::max(in, out) >= std::max(3 * most, 6 * step));
+  const bool jumps = s.count >= 4 && std::max(in, out) >= std::max(3 * most, 6 * step);
+  const bool cut_short = s.count >= 8 && std::min(in, out) >= std::max(0.3 * least, 6 * step);
+  return zeroed || (by_chance < 1e-3 && (jumps || cut_short));
 }
 
 }  // namespace detail

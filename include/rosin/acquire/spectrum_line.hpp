@@ -61,6 +61,23 @@ namespace detail {
   return out;
 }
 
+/// The strongest lines, strongest first, without those that a stronger one casts beside itself: the side lobes of the Hann
+/// window begin at 0.03, 2.5 bins away, and fall with the third power of the distance.
+[[nodiscard]] inline std::vector<spectrum_line> main_lobes(std::vector<spectrum_line> lines, double bin_Hz, double least,
+                                                           std::size_t count) {
+  std::sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.amplitude > b.amplitude; });
+  std::vector<spectrum_line> out;
+  for (const auto& line : lines) {
+    if (out.size() == count || line.amplitude <= least || line.amplitude < 0.003 * lines.front().amplitude) break;
+    const bool cast = std::any_of(out.begin(), out.end(), [&](const spectrum_line& strong) {
+      const double bins = std::abs(strong.frequency_Hz - line.frequency_Hz) / bin_Hz;
+      return line.amplitude < 0.05 * strong.amplitude / std::pow(std::max(bins, 1.0) / 2.5, 3);
+    });
+    if (!cast) out.push_back(line);
+  }
+  return out;
+}
+
 }  // namespace detail
 
 /// The strongest lines between two frequencies, strongest first; none that is a side lobe of a stronger one.
@@ -71,6 +88,8 @@ namespace detail {
   std::size_t size = 0;
   const auto bins = detail::amplitude_bins(detail::hann_windowed(x), size);
   const double width = sample_rate_Hz / static_cast<double>(size);
+  double largest = 0;
+  for (const double v : x) largest = std::max(largest, std::abs(v));
   for (std::size_t k = 2; k + 2 < bins.size(); ++k) {
     const double f = static_cast<double>(k) * width;
     if (f < low_Hz || f > high_Hz || bins[k] < bins[k - 1] || bins[k] <= bins[k + 1] || bins[k - 1] <= 0 || bins[k + 1] <= 0) continue;
@@ -78,10 +97,7 @@ namespace detail {
     const double shift = a - 2 * b + c < 0 ? (a - c) / (2 * (a - 2 * b + c)) : 0.0;
     out.push_back({f + shift * width, std::exp(b - (a - c) * shift / 4)});
   }
-  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.amplitude > b.amplitude; });
-  if (!out.empty()) std::erase_if(out, [top = out.front().amplitude](const auto& line) { return line.amplitude < 0.003 * top; });
-  if (out.size() > count) out.resize(count);
-  return out;
+  return detail::main_lobes(std::move(out), sample_rate_Hz / static_cast<double>(x.size()), 1e-12 * largest, count);
 }
 
 }  // namespace rosin

@@ -1,0 +1,168 @@
+#include <rosin/acquire/checks.hpp>
+
+#include <doctest/doctest.h>
+
+#include <support/synthetic_take.hpp>
+
+namespace {
+
+rosin::take_check check(const test::pluck& p) {
+  const auto r = test::two_force_rig(p);
+  return rosin::check_take(r, r.takes[0], test::pluck_signals(r, p));
+}
+
+std::string kinds(const rosin::take_check& c) {
+  std::string out;
+  for (const auto& f : c.findings) out += f.kind + "(" + f.channel + ":" + name_of(f.level) + ") ";
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("sound plucks raise no alarm, wherever they are plucked, soft or hard, in noise") {
+  for (const double position : {0.06, 0.2, 0.3333, 0.47, 0.5, 0.7, 0.9})
+    for (const double noise : {0.0, 5e-4, 0.01}) {
+      test::pluck p;
+      p.position = position;
+      p.noise_N = noise;
+      p.force_N = noise > 1e-3 ? 1.4 : 0.4;
+      CAPTURE(position);
+      CAPTURE(noise);
+      CHECK(kinds(check(p)) == "");
+    }
+}
+
+TEST_CASE("release, pitch and noise are measured on the way") {
+  test::pluck p;
+  const auto c = check(p);
+  REQUIRE(c.release_s);
+  CHECK(*c.release_s == doctest::Approx(p.release_s).epsilon(2e-3));
+  REQUIRE(c.pitch_Hz);
+  CHECK(*c.pitch_Hz == doctest::Approx(330).epsilon(1e-3));
+  REQUIRE(c.channels.size() == 2);
+  REQUIRE(c.channels[0].noise_rms);
+  CHECK(*c.channels[0].noise_rms == doctest::Approx(4e-4).epsilon(0.08));
+}
+
+TEST_CASE("swapped channels, DC and AC coupled") {
+  for (const double position : {0.1, 0.3, 0.42, 0.8}) {
+    CAPTURE(position);
+    test::pluck p;
+    p.position = position;
+    const auto r = test::two_force_rig(p);
+    auto x = test::pluck_forces(p);
+    std::swap(x[0], x[1]);
+    CHECK(kinds(rosin::check_take(r, r.takes[0], test::signals(r, p, x))) == "swapped-channels(:error) ");
+    for (auto& channel : x) test::high_pass(channel, 0.5, p.rate_Hz);
+    CHECK(rosin::check_take(r, r.takes[0], test::signals(r, p, x)).found("swapped-channels"));
+  }
+}
+
+TEST_CASE("inverted channels are named, one or both") {
+  test::pluck p;
+  p.far_gain = -1;
+  CHECK(kinds(check(p)) == "inverted-channel(far:error) ");
+  p.near_gain = -1;
+  CHECK(kinds(check(p)) == "inverted-channel(near:error) inverted-channel(far:error) ");
+}
+
+TEST_CASE("a wrong sample rate shows in the pitch") {
+  test::pluck p;
+  for (const double header : {44100.0, 96000.0, 24000.0}) {
+    CAPTURE(header);
+    p.rate_in_header_Hz = header;
+    const auto c = check(p);
+    REQUIRE(c.found("wrong-pitch"));
+    CHECK(rosin::has_error(c.findings));
+  }
+  p.rate_in_header_Hz = 48000 * 1.004;  // within what a tuning may be off
+  CHECK(kinds(check(p)) == "");
+}
+
+TEST_CASE("a pluck that is damped or missing") {
+  test::pluck p;
+  p.quality = 8;
+  CHECK(check(p).found("does-not-ring"));
+  test::pluck none;
+  none.release_s = 10;
+  CHECK(check(none).found("no-release"));
+  CHECK(rosin::has_error(check(none).findings));
+}
+
+TEST_CASE("a wrong position, and sensors that do not pass the level, are warnings") {
+  test::pluck p;
+  auto r = test::two_force_rig(p);
+  r.contact_position = 0.4;
+  CHECK(kinds(rosin::check_take(r, r.takes[0], test::pluck_signals(r, p))) == "wrong-position(:warning) ");
+  r.contact_position = 0.3;
+  auto x = test::pluck_forces(p);
+  for (auto& channel : x) test::high_pass(channel, 0.5, p.rate_Hz);
+  CHECK(kinds(rosin::check_take(r, r.takes[0], test::signals(r, p, x))) ==
+        "undeclared-ac-coupling(near:warning) undeclared-ac-coupling(far:warning) ");
+  for (auto& c : r.channels) c.ac_coupled_Hz = 0.5;
+  CHECK(kinds(rosin::check_take(r, r.takes[0], test::signals(r, p, x))) == "");
+}
+
+TEST_CASE("hum and an offset under a pluck") {
+  test::pluck p;
+  const auto r = test::two_force_rig(p);
+  auto x = test::pluck_forces(p);
+  for (std::size_t i = 0; i < x[0].size(); ++i) x[0][i] += 0.02 * std::sin(6.283185307179586 * 50 * static_cast<double>(i) / p.rate_Hz);
+  const auto hum = rosin::check_take(r, r.takes[0], test::signals(r, p, x));
+  CHECK(kinds(hum) == "hum(near:warning) ");
+  CHECK(hum.channels[0].hum->amplitude == doctest::Approx(0.02).epsilon(0.03));
+  auto y = test::pluck_forces(p);
+  for (double& v : y[1]) v += 0.1;
+  CHECK(rosin::check_take(r, r.takes[0], test::signals(r, p, y)).found("offset"));
+}
+
+TEST_CASE("clipped, frozen, silent") {
+  test::pluck p;
+  p.force_N = 3;  // beyond full scale
+  CHECK(check(p).found("clipping"));
+  test::pluck silent;
+  silent.near_gain = 0;
+  silent.noise_N = 0;
+  CHECK(kinds(check(silent)) == "silence(near:error) ");
+}
+
+TEST_CASE("a bow take whose ends pull in opposite directions") {
+  test::pluck p;
+  auto r = test::two_force_rig(p);
+  r.takes[0].kind = rosin::take_kind::bow;
+  r.takes[0].normal_force_N = 0.3;
+  auto x = test::pluck_forces(p);
+  for (double& v : x[0]) v += 0.2;
+  for (double& v : x[1]) v += 0.1;
+  CHECK(kinds(rosin::check_take(r, r.takes[0], test::signals(r, p, x))) == "");
+  auto inverted = x;
+  for (double& v : inverted[1]) v = -v;
+  CHECK(kinds(rosin::check_take(r, r.takes[0], test::signals(r, p, inverted))) == "inverted-channel(far:error) ");
+  for (double& v : inverted[0]) v = -v;
+  CHECK(kinds(rosin::check_take(r, r.takes[0], test::signals(r, p, inverted))) == "bowed-backwards(:warning) ");
+}
+
+TEST_CASE("a single pickup is checked for what it can tell") {
+  test::pluck p;
+  auto r = test::two_force_rig(p);
+  r.channels.resize(1);
+  r.channels[0].name = "pickup";
+  r.channels[0].quantity = rosin::quantity::string_velocity;
+  r.channels[0].per_full_scale.reset();
+  auto x = test::pluck_forces(p);
+  x.resize(1);
+  for (std::size_t i = 0; i < 960; ++i) x[0][i] = 0;
+  CHECK(kinds(rosin::check_take(r, r.takes[0], test::signals(r, p, x))) == "");
+  p.rate_in_header_Hz = 44100;
+  CHECK(kinds(rosin::check_take(r, r.takes[0], test::signals(r, p, x))) == "wrong-pitch(pickup:warning) ");
+}
+
+TEST_CASE("a quiet take gives the noise") {
+  test::pluck p;
+  p.force_N = 0;
+  auto r = test::two_force_rig(p);
+  r.takes[0].kind = rosin::take_kind::quiet;
+  const auto c = rosin::check_take(r, r.takes[0], test::pluck_signals(r, p));
+  CHECK(kinds(c) == "");
+  CHECK(*c.channels[1].noise_rms == doctest::Approx(4e-4).epsilon(0.03));
+}
