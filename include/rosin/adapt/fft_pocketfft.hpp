@@ -15,7 +15,14 @@
 #ifndef POCKETFFT_NO_VECTORS
 #define POCKETFFT_NO_VECTORS
 #endif
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // a false alarm in its Bluestein transform, at -O3
+#endif
 #include <pocketfft_hdronly.h>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 #include <algorithm>
 #include <complex>

@@ -169,10 +169,13 @@ private:
       const std::size_t channel = 2 * pair + part;
       const std::span<const T> x = channel < inputs_ ? in[channel] : std::span<const T>{};
       const std::size_t at = static_cast<std::size_t>(start);  // before the record: a huge number, no sample of it
-      for (std::size_t k = 0; k < fft_.size(); ++k, row += step)
+      std::size_t k = 0;
+      if (Inside && !x.empty())
+        for (; k + lanes <= fft_.size(); k += lanes, row += lanes * step) transpose<T, lanes>(&x[at + k], useful_, row, step);
+      for (; k < fft_.size(); ++k, row += step)
         for (std::size_t lane = 0; lane < lanes; ++lane) {
           const std::size_t n = at + lane * useful_ + k;
-          row[lane] = (Inside && !x.empty()) || n < x.size() ? x[n] : T(0);
+          row[lane] = n < x.size() ? x[n] : T(0);
         }
     }
   }
@@ -194,10 +197,13 @@ private:
     for (std::size_t part = 0; part < 2 && 2 * pair + part < outputs_; ++part) {
       const T* row = sum_.data() + (taps_.taps() - 1) * step + part * lanes;
       const std::span<T> y = out[2 * pair + part];
-      for (std::size_t k = 0; k < useful_; ++k, row += step)
+      std::size_t k = 0;
+      if (Inside)
+        for (; k + lanes <= useful_; k += lanes, row += lanes * step) transpose<T, lanes>(row, step, &y[begin + k], useful_);
+      for (; k < useful_; ++k, row += step)
         for (std::size_t lane = 0; lane < lanes; ++lane) {
           const std::size_t n = begin + lane * useful_ + k;
-          if (Inside || n < y.size()) y[n] = row[lane];
+          if (n < y.size()) y[n] = row[lane];
         }
     }
   }

@@ -97,9 +97,9 @@ private:
 
   /// What a butterfly of four shares: (a + c) +- (b + d), a - c, b - d.
   struct sums {
-    sums(const T* x, std::size_t quarter) noexcept
+    [[gnu::always_inline]] sums(const T* x, std::size_t quarter) noexcept
         : sums{complex::load(x), complex::load(x + quarter), complex::load(x + 2 * quarter), complex::load(x + 3 * quarter)} {}
-    sums(const complex& a, const complex& b, const complex& c, const complex& d) noexcept
+    [[gnu::always_inline]] sums(const complex& a, const complex& b, const complex& c, const complex& d) noexcept
         : even{(a + c) + (b + d)}, minus_even{(a + c) - (b + d)}, odd{a - c}, cross{b - d} {}
     complex even, minus_even, odd, cross;
   };

@@ -7,8 +7,11 @@
 //
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
+#include <utility>
 
 namespace rosin {
 
@@ -72,5 +75,28 @@ struct lane_complex {
   [[nodiscard]] lane_complex times_conj(const T* w) const noexcept { return {re * w[0] + im * w[1], im * w[0] - re * w[1]}; }
   [[nodiscard]] lane_complex conj() const noexcept { return {re, -im}; }
 };
+
+/// Transposes Count rows of Count numbers: to[r to_stride + c] = from[c from_stride + r]. The rows are interleaved with each
+/// other log2(Count) times, as two halves of a pack of cards, and lie transposed then; no number travels alone.
+template <class T, std::size_t Count>
+void transpose(const T* from, std::size_t from_stride, T* to, std::size_t to_stride) noexcept {
+  using vector = typename lanes_of<T, Count>::type;
+  std::array<vector, Count> rows, shuffled;
+  for (std::size_t c = 0; c < Count; ++c) std::memcpy(&rows[c], from + c * from_stride, sizeof(vector));
+  if constexpr (Count > 1) {
+    const auto interleave = []<std::size_t... I>(const vector& a, const vector& b, auto half, std::index_sequence<I...>) {
+      return __builtin_shufflevector(a, b, (half() * Count / 2 + I / 2 + I % 2 * Count)...);
+    };
+    for (std::size_t round = 1; round < Count; round *= 2) {
+      for (std::size_t c = 0; c < Count / 2; ++c) {
+        constexpr std::make_index_sequence<Count> all;
+        shuffled[2 * c] = interleave(rows[c], rows[c + Count / 2], std::integral_constant<std::size_t, 0>{}, all);
+        shuffled[2 * c + 1] = interleave(rows[c], rows[c + Count / 2], std::integral_constant<std::size_t, 1>{}, all);
+      }
+      rows = shuffled;
+    }
+  }
+  for (std::size_t r = 0; r < Count; ++r) std::memcpy(to + r * to_stride, &rows[r], sizeof(vector));
+}
 
 }  // namespace rosin

@@ -45,3 +45,23 @@ TEST_CASE_TEMPLATE("a register computes with complex numbers side by side", T, f
   arithmetic_is_that_of_complex_numbers<T, 1>();
   arithmetic_is_that_of_complex_numbers<T, rosin::register_lanes<T>>();
 }
+
+namespace {
+
+template <class T, std::size_t Count>
+void a_tile_is_transposed() {
+  constexpr std::size_t from_stride = 2 * Count + 1, to_stride = Count + 3;
+  std::array<T, from_stride * Count> from{};
+  std::array<T, to_stride * Count> to{};
+  for (std::size_t i = 0; i < from.size(); ++i) from[i] = static_cast<T>(i);
+  rosin::transpose<T, Count>(from.data(), from_stride, to.data(), to_stride);
+  for (std::size_t r = 0; r < Count; ++r)
+    for (std::size_t c = 0; c < to_stride; ++c) CHECK(to[r * to_stride + c] == (c < Count ? from[c * from_stride + r] : T(0)));
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("a tile is transposed", T, float, double) {
+  a_tile_is_transposed<T, 1>();
+  a_tile_is_transposed<T, rosin::register_lanes<T>>();
+}

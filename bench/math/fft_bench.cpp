@@ -1,0 +1,38 @@
+// Where the chirp-z transform overtakes Eigen's butterfly for a prime radix: the bound in math/fft.hpp.
+#include <rosin/math/fft.hpp>
+
+#include <benchmark/benchmark.h>
+
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+namespace {
+
+using bins = std::vector<std::complex<double>>;
+
+void eigen_butterfly(benchmark::State& state) {
+  const std::size_t n = 512 * static_cast<std::size_t>(state.range(0));
+  Eigen::FFT<double> fft;
+  const bins in(n, {1, 2});
+  bins out(n);
+  for (auto _ : state) fft.fwd(out.data(), in.data(), static_cast<Eigen::Index>(n));
+}
+
+void chirp_z(benchmark::State& state) {
+  const std::size_t n = 512 * static_cast<std::size_t>(state.range(0));
+  rosin::chirp_z<double, rosin::eigen_fft<std::complex<double>>> fft(n);
+  const bins in(n, {1, 2});
+  bins out(n);
+  for (auto _ : state) fft.forward(in.data(), out.data());
+}
+
+void primes(benchmark::internal::Benchmark* bench) {
+  for (const int p : {7, 13, 19, 23, 29, 31, 41, 61}) bench->Arg(p);
+  bench->Unit(benchmark::kMicrosecond);
+}
+
+}  // namespace
+
+BENCHMARK(eigen_butterfly)->Name("fft/512_times_prime/eigen_butterfly")->Apply(primes);
+BENCHMARK(chirp_z)->Name("fft/512_times_prime/chirp_z")->Apply(primes);
