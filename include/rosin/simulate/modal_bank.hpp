@@ -96,8 +96,8 @@ public:
     accumulator odd, even;
     for (std::size_t i = 0; i < odd_; ++i) step(lanes_[i], force, odd);
     for (std::size_t i = odd_; i < lanes_.size(); ++i) step(lanes_[i], force, even);
-    for (std::size_t p = 0; p < ports; ++p) free_.velocity[p] = odd.velocity[p].sum() + even.velocity[p].sum();
-    const double o = odd.end.sum(), e = even.end.sum();
+    for (std::size_t p = 0; p < ports; ++p) free_.velocity[p] = total(odd.velocity[p]) + total(even.velocity[p]);
+    const double o = total(odd.end), e = total(even.end);
     free_.near = o + e;
     free_.far = o - e;
   }
@@ -123,6 +123,11 @@ private:
     pack end = pack::Zero();
     accumulator() noexcept { velocity.fill(pack::Zero()); }
   };
+
+  /// In pairs; Eigen's own sum makes GCC 12 warn of its AVX-512 header.
+  [[nodiscard]] static double total(const pack& x) noexcept {
+    return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
+  }
 
   static void step(lane& l, const values& force, accumulator& sum) noexcept {
     pack drive = l.shape[0] * force[0];

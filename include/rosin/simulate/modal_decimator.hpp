@@ -43,11 +43,22 @@ public:
   [[nodiscard]] std::vector<double> slopes(const std::vector<double>& steps) const { return run(steps, slopes_); }
 
 private:
+  using pack = Eigen::Array<double, 8, 1>;
+
+  /// Eight partial sums; Eigen's own dot product makes GCC 12 warn of its AVX-512 header.
+  [[nodiscard]] static double dot(const Eigen::VectorXd& taps, const double* x) noexcept {
+    pack sum = pack::Zero();
+    Eigen::Index i = 0;
+    for (; i + 8 <= taps.size(); i += 8) sum += Eigen::Map<const pack>(taps.data() + i) * Eigen::Map<const pack>(x + i);
+    double total = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+    for (; i < taps.size(); ++i) total += taps[i] * x[i];
+    return total;
+  }
+
   [[nodiscard]] std::vector<double> run(const std::vector<double>& steps, const Eigen::VectorXd& taps) const {
-    const auto length = static_cast<Eigen::Index>(steps.size()) - taps.size();
+    const auto last = static_cast<Eigen::Index>(steps.size()) - taps.size();
     std::vector<double> samples;
-    for (Eigen::Index first = 0; first <= length; first += stride_)
-      samples.push_back(taps.dot(Eigen::Map<const Eigen::VectorXd>(steps.data() + first, taps.size())));
+    for (Eigen::Index first = 0; first <= last; first += stride_) samples.push_back(dot(taps, steps.data() + first));
     return samples;
   }
 
