@@ -45,7 +45,9 @@
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/calibrate/damped_lines.hpp>
 #include <rosin/calibrate/partial_baseband.hpp>
+#include <rosin/calibrate/partial_choice.hpp>
 #include <rosin/calibrate/partial_line.hpp>
+#include <rosin/calibrate/partials.hpp>
 #include <rosin/calibrate/pluck_fit.hpp>
 #include <rosin/calibrate/pluck_layout.hpp>
 #include <rosin/calibrate/pluck_model.hpp>
@@ -80,6 +82,8 @@
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/friction/yield_curve.hpp>
 #include <rosin/friction/yield_curve_design.hpp>
+
+#include <rosin/torsion/torsion_response.hpp>
 
 #include <rosin/simulate/converter.hpp>
 #include <rosin/simulate/modal_bank.hpp>

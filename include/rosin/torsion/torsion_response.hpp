@@ -1,0 +1,76 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// How fast the string's surface moves at the contact because the string rolls under the friction force. Torsion obeys the wave
+// equation between two fixed ends; with travel times tau_j from the contact to either end and a constant Q,
+//
+//     v_T / f = (1 / (2 Z_T)) 2 sinh(g_1) sinh(g_2) / sinh(g_1 + g_2),    g_j = i w tau_j + |w| tau_j / (2 Q)
+//
+// (specification sheet, sections 2 and 4; Woodhouse, Schumacher & Garoff (2000), section IV). Written with decaying exponentials
+// only, (1 - e^{-2 g_1})(1 - e^{-2 g_2}) / (1 - e^{-2 (g_1 + g_2)}), it neither overflows nor cancels at high frequency. It is one
+// transfer function, applied to the whole record at once: Q is as low as 15, so that all memory ends within a few dozen of the
+// torsional periods, and zeros behind the record keep its end out of its beginning.
+//
+#pragma once
+
+#include <rosin/math/fft.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+namespace rosin {
+
+/// Torsion as seen from the contact; the impedance is referred to the surface.
+struct torsion_waveguide {
+  std::array<double, 2> delay_s{};  ///< travel times to the near and the far end
+  double impedance_Ns_m = 0;
+  double q = 15;
+
+  /// Surface velocity for 1 N at a frequency in Hz, m/s per N.
+  [[nodiscard]] std::complex<double> operator()(double frequency_Hz) const noexcept {
+    const double w = 2 * std::numbers::pi * frequency_Hz;
+    if (w == 0) return 0;
+    const auto round_trip = [&](double delay) {
+      return std::exp(-2.0 * std::complex<double>(std::abs(w) * delay / (2 * q), w * delay));
+    };
+    const std::complex<double> a = round_trip(delay_s[0]), b = round_trip(delay_s[1]);
+    return (1.0 - a) * (1.0 - b) / (1.0 - a * b) / (2 * impedance_Ns_m);
+  }
+
+  /// How long what happened is felt: until an impulse has died to `rest` of its size.
+  [[nodiscard]] double memory_s(double rest = 1e-3) const noexcept {
+    return 2 * (delay_s[0] + delay_s[1]) * q / std::numbers::pi * std::log(1 / rest);
+  }
+};
+
+/// From the transverse travel times and impedance, and the ratios torsional / transverse.
+[[nodiscard]] inline torsion_waveguide torsion_of(const std::array<double, 2>& transverse_delay_s, double impedance_Ns_m,
+                                                  double speed_ratio, double impedance_ratio, double q) noexcept {
+  return {{transverse_delay_s[0] / speed_ratio, transverse_delay_s[1] / speed_ratio}, impedance_Ns_m * impedance_ratio, q};
+}
+
+/// Surface velocity by rotation for a force of finite samples. Before the record the force had its first value for ever.
+template <class Fft = eigen_fft<double>>
+[[nodiscard]] std::vector<double> torsion_velocity(const torsion_waveguide& waveguide, std::span<const double> force_N, double rate_Hz) {
+  if (force_N.empty()) return {};
+  const auto memory = static_cast<std::size_t>(std::ceil(2 * waveguide.memory_s(1e-4) * rate_Hz));
+  const std::size_t size = fast_size(force_N.size() + memory + 2);
+  std::vector<double> padded(size, 0.0);
+  for (std::size_t i = 0; i < force_N.size(); ++i) padded[i] = force_N[i] - force_N.front();
+  const double end = padded[force_N.size() - 1];  // a gentle way back to zero, which itself rings in the padding only
+  for (std::size_t i = 0; i < memory / 2; ++i)
+    padded[force_N.size() + i] = 0.5 * end * (1 + std::cos(std::numbers::pi * static_cast<double>(i + 1) / static_cast<double>(memory / 2 + 1)));
+  Fft fft(size);
+  std::vector<std::complex<double>> bins(size / 2 + 1);
+  fft.forward(padded.data(), bins.data());
+  for (std::size_t k = 0; k < bins.size(); ++k) bins[k] *= waveguide(static_cast<double>(k) * rate_Hz / static_cast<double>(size));
+  fft.inverse(bins.data(), padded.data());
+  padded.resize(force_N.size());
+  return padded;
+}
+
+}  // namespace rosin

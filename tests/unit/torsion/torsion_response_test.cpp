@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/torsion/torsion_response.hpp>
+
+#include <doctest/doctest.h>
+
+namespace {
+
+using complex = std::complex<double>;
+
+// A violin E string: 660 Hz, position 0.3, torsion seven times as fast.
+rosin::torsion_waveguide e_string(double q) {
+  const double one_way = 0.5 / 660.0;
+  return rosin::torsion_of({0.3 * one_way, 0.7 * one_way}, 0.175, 7.0, 3.5, q);
+}
+
+// Sum over the modes, each with the loss proportional to displacement that a constant Q stands for:
+// sum_n (2 / M) sin^2(n pi p) i w / (w_n^2 - w^2 + i w w_n / Q), M = Z tau the inertia of the whole string.
+complex modal_sum(const rosin::torsion_waveguide& at, double frequency_Hz, int modes) {
+  const double w = 2 * std::numbers::pi * frequency_Hz, one_way = at.delay_s[0] + at.delay_s[1];
+  const double p = at.delay_s[0] / one_way, mass = at.impedance_Ns_m * one_way;
+  complex sum = 0;
+  for (int n = 1; n <= modes; ++n) {
+    const double wn = std::numbers::pi * n / one_way, shape = std::sin(n * std::numbers::pi * p);
+    sum += 2 / mass * shape * shape * complex(0, w) / complex(wn * wn - w * w, w * wn / at.q);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("torsion: the transfer function is the sum over the torsional modes") {
+  const auto at = e_string(300);
+  for (const double f : {500.0, 2000.0, 4600.0, 9000.0, 13870.0, 20000.0}) {
+    const complex exact = modal_sum(at, f, 40000), mine = at(f);
+    CHECK(std::abs(mine - exact) < 0.01 * std::abs(exact));
+  }
+}
+
+TEST_CASE("torsion: first resonance, height and width at Q = 15") {
+  const auto at = e_string(15);
+  const double f1 = 0.5 / (at.delay_s[0] + at.delay_s[1]);
+  CHECK(f1 == doctest::Approx(7 * 660.0));
+  const double peak = std::abs(at(f1)), half = std::abs(at(f1 * (1 + 0.5 / 15)));
+  CHECK(half / peak == doctest::Approx(1 / std::sqrt(2.0)).epsilon(0.1));
+  // 2 sin^2(pi p) / (M w / Q)
+  const double mass = at.impedance_Ns_m * (at.delay_s[0] + at.delay_s[1]), w = 2 * std::numbers::pi * f1;
+  CHECK(peak == doctest::Approx(2 * std::pow(std::sin(0.3 * std::numbers::pi), 2) * 15 / (mass * w)).epsilon(0.03));
+}
+
+TEST_CASE("torsion: nothing moves under a steady force, and nothing overflows") {
+  const auto at = e_string(15);
+  CHECK(std::abs(at(0.0)) == 0);
+  CHECK(std::abs(at(1e-3)) < 1e-6);
+  CHECK(std::isfinite(std::abs(at(1e9))));
+  CHECK(std::abs(at(1e9)) == doctest::Approx(1 / (2 * at.impedance_Ns_m)));  // nothing comes back: a bare waveguide
+  const std::vector<double> steady(500, 0.7);
+  for (const double v : rosin::torsion_velocity(at, steady, 128e3)) CHECK(std::abs(v) < 1e-12);
+  CHECK(rosin::torsion_velocity(at, {}, 128e3).empty());
+}
+
+TEST_CASE("torsion: a force in time gives the waves that a step sends out, one after the other") {
+  // Until the first echo is back the surface moves by 1 / (2 Z_T); then the echo of the near end takes that back.
+  const auto at = e_string(40);
+  const double rate = 4e6;
+  std::vector<double> force(8000, 0.0);
+  for (std::size_t i = 2000; i < force.size(); ++i) force[i] = 1;
+  const auto v = rosin::torsion_velocity(at, force, rate);
+  const double echo = 2 * at.delay_s[0] * rate;
+  CHECK(v[2000 + static_cast<std::size_t>(0.5 * echo)] * 2 * at.impedance_Ns_m == doctest::Approx(1).epsilon(0.02));
+  CHECK(std::abs(v[2000 + static_cast<std::size_t>(1.5 * echo)] * 2 * at.impedance_Ns_m) < 0.03);
+  CHECK(std::abs(v[1900]) * 2 * at.impedance_Ns_m < 0.02);  // constant Q looks ahead by very little
+}
+
+TEST_CASE("torsion: the record's end does not reach its beginning") {
+  const auto at = e_string(15);
+  std::vector<double> force(3000, 0.0);
+  for (std::size_t i = 1000; i < force.size(); ++i) force[i] = 0.2 * std::sin(0.11 * static_cast<double>(i)) + 0.5;
+  const auto whole = rosin::torsion_velocity(at, force, 128e3);
+  force.resize(6000, 0.0);
+  const auto longer = rosin::torsion_velocity(at, force, 128e3);
+  for (std::size_t i = 0; i < 2900; ++i) CHECK(std::abs(whole[i] - longer[i]) < 2e-3);
+  for (std::size_t i = 0; i < 900; ++i) CHECK(std::abs(whole[i]) < 2e-3);
+}
