@@ -63,13 +63,19 @@ namespace detail {
   return digits.data();
 }
 
-/// One finding for all spans of a kind, from the first to the last of them.
-inline void report_spans(take_check& out, const take_signals& from, const std::string& channel, const std::vector<sample_span>& spans,
-                         const std::string& kind, const std::string& what, const std::string& advice) {
-  if (spans.empty()) return;
+[[nodiscard]] inline std::size_t samples_in(const std::vector<sample_span>& spans) noexcept {
   std::size_t samples = 0;
   for (const auto& s : spans) samples += s.count;
-  out.add(severity::error, kind, channel, from.time_s(spans.front().first), from.time_s(spans.back().end()),
+  return samples;
+}
+
+/// One finding for all spans of a kind, from the first to the last of them.
+inline void report_spans(take_check& out, const take_signals& from, const std::string& channel, const std::vector<sample_span>& spans,
+                         const std::string& kind, const std::string& what, const std::string& advice,
+                         severity level = severity::error) {
+  if (spans.empty()) return;
+  const std::size_t samples = samples_in(spans);
+  out.add(level, kind, channel, from.time_s(spans.front().first), from.time_s(spans.back().end()),
           what + ": " + std::to_string(samples) + " samples in " + std::to_string(spans.size()) + " place(s), first at sample " +
               std::to_string(spans.front().first), advice);
 }
@@ -130,8 +136,10 @@ inline void report_hum(take_check& out, channel_check& c, const take_signals& fr
   channel_check c = figures_of(s);
   check_level(out, c, step, quiet);
   if (c.highest - c.lowest > 2 * step) {
-    report_spans(out, from, s.sensor.name, clipped(s.values, step, s.full_scale), "clipping",
-                 "clipped at " + figure(c.of_full_scale, "%.3f") + " of full scale", "lower the gain and record again");
+    const auto cut = clipped(s.values, step, s.full_scale);
+    const bool bearable = s.sensor.quantity != quantity::termination_force && samples_in(cut) * 1000 < s.values.size();
+    report_spans(out, from, s.sensor.name, cut, "clipping", "clipped at " + figure(c.of_full_scale, "%.3f") + " of full scale",
+                 "lower the gain and record again", bearable ? severity::warning : severity::error);
     report_spans(out, from, s.sensor.name, dropouts(s.values, step), "dropouts", "samples were lost (value held or zero)",
                  "check the recorder's buffers and the disk, and record again");
     check_offset(out, s, c, quiet);

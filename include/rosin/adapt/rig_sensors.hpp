@@ -87,8 +87,8 @@ inline std::vector<termination_mode> read_modes(toml_fields fields) {
                    mode.required_number("mass_kg", up_to(1e4))});
     mode.unknown();
   });
-  const auto* list = fields.list("modes", "");
-  if (list != nullptr && list->empty()) fields.refuse("modes", "is empty");
+  const toml::node* node = fields.find("modes");
+  if (node != nullptr && node->is_array() && node->as_array()->empty()) fields.refuse("modes", "is empty");
   fields.unknown();
   return out;
 }

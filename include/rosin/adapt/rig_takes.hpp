@@ -82,7 +82,7 @@ inline take read_take(toml_fields fields, bool forces, bool placed) {
   if (t.kind == take_kind::pluck) read_pluck(fields, t, forces);
   if (t.kind == take_kind::bow) read_bow(fields, t, forces);
   if (kind && t.kind == take_kind::quiet) read_quiet(fields);
-  if (kind || !fields.has("kind")) fields.unknown();  // with an unknown kind, nobody can say which keys belong
+  if (kind) fields.unknown();  // without a kind, nobody can say which keys belong
   if (t.name.find_first_of("/\\") != std::string::npos) fields.refuse("name", "must not hold / or \\");
   if (t.file.starts_with('/')) fields.refuse("file", "must be a path relative to the folder of the rig file");
   return t;

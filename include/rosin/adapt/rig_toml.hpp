@@ -42,13 +42,13 @@ inline outcome<toml::table> parse_toml(std::string_view text, const std::string&
 #endif
 }
 
-/// near and far on both ends need length and tension; impedance must not contradict them.
-inline void check_string(toml_fields fields, const rig& r) {
+/// near and far on both ends need length and tension; impedance must not contradict them, if all are sound.
+inline void check_string(toml_fields fields, const rig& r, bool sound) {
   const string_section& s = r.string;
   if (r.has_both_forces())
     for (const char* key : {"length_m", "tension_N"})
       if (!fields.has(key)) fields.missing(key);
-  if (!s.impedance_Ns_m || !s.tension_N || !s.length_m) return;
+  if (!sound || !s.impedance_Ns_m || !s.tension_N || !s.length_m) return;
   const double expected = *s.tension_N / (2 * *s.length_m * s.fundamental_Hz);
   const double limit = s.tension_tolerance.value_or(0.02) + s.fundamental_tolerance.value_or(0.003) +
                        s.impedance_tolerance.value_or(0.01);
@@ -77,9 +77,11 @@ inline void read_tables(toml_fields& root, rig& r) {
   };
   for (const char* key : {"string", "channels"})
     if (!root.has(key)) root.missing(key);
+  const std::size_t before = root.log().size();
   if (auto t = under("string")) r.string = read_string(*t);
+  const bool sound = root.log().size() == before;
   if (auto t = under("channels")) r.channels = read_channels(*t, *root.table("channels"));
-  if (auto t = under("string")) check_string(*t, r);
+  if (auto t = under("string")) check_string(*t, r, sound);
   if (auto t = under("contact")) read_contact(*t, r);
   if (auto t = under("torsion")) r.torsion = read_torsion(*t);
   if (auto t = under("terminations")) {

@@ -29,6 +29,7 @@ struct value_range {
     return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
   }
   [[nodiscard]] std::string text() const {
+    if (low == -std::numeric_limits<double>::infinity()) return "must be a finite number";
     return std::string{"must be "} + (low_open ? "larger than " : "at least ") + number(low) +
            (high < std::numeric_limits<double>::infinity() ? (high_open ? " and less than " : " and at most ") + number(high)
                                                            : std::string{});

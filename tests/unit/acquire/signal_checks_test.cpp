@@ -60,6 +60,13 @@ TEST_CASE("clipping and dropouts are errors with their time and place") {
   REQUIRE(clipped.found("clipping"));
   CHECK(clipped.findings[0].channel == "near");
   CHECK(clipped.findings[0].what.find("of full scale") != std::string::npos);
+  s.signals[0].sensor.quantity = rosin::quantity::sound;  // much of it is an error here too, a touch of it is not
+  CHECK(check(s).findings[0].level == rosin::severity::error);
+  auto touch = sine(0.8, 1e-3);
+  for (std::size_t i = 100; i < 104; ++i) touch.signals[0].values[i] = 2.0 - 1.0 / 16384;
+  CHECK(check(touch).findings.at(0).level == rosin::severity::error);
+  touch.signals[0].sensor.quantity = rosin::quantity::sound;
+  CHECK(check(touch).findings.at(0).level == rosin::severity::warning);
   auto lost = sine(0.8, 1e-3);
   for (std::size_t i = 4000; i < 4040; ++i) lost.signals[0].values[i] = lost.signals[0].values[3999];
   const auto dropped = check(lost);
