@@ -15,9 +15,12 @@
 
 namespace {
 
-const rosin::modal_rig rig{
-    .string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}},
-    .torsion = {.speed_ratio = 7, .impedance_ratio = 3.5, .quality = 15}};
+const rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                      .tension_N = 72.5,
+                                      .fundamental_Hz = 660,
+                                      .bending_stiffness_Nm2 = 4.7e-5,
+                                      .loss = {.quality = 1000}},
+                           .torsion = {.speed_ratio = 7, .impedance_ratio = 3.5, .quality = 15}};
 const rosin::steady_rod rod{.speed_m_s = 0.2, .normal_force_N = 0.3, .start_s = 0, .rise_s = 0.005};
 
 template <rosin::FrictionLaw Law>
@@ -35,8 +38,8 @@ void bow_with(const char* name, Law law) {
 }  // namespace
 
 int main() {
-  const rosin::two_exponential_curve<> steady;          // measured in steady sliding
-  const rosin::contact_heat_parameters<> heat;          // the contact's layer, rod and string
+  const rosin::two_exponential_curve<> steady;  // measured in steady sliding
+  const rosin::contact_heat_parameters<> heat;  // the contact's layer, rod and string
   const auto strength = rosin::design_yield_curve(steady, heat.without_string(), rod.normal_force_N);
   if (!strength) return 1;
 

@@ -12,9 +12,12 @@
 #include <rosin/simulate/modal_stroke.hpp>
 
 int main() {
-  const rosin::modal_rig rig{
-      .string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}},
-      .torsion = {.speed_ratio = 7, .impedance_ratio = 3.5, .quality = 15}};
+  const rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                        .tension_N = 72.5,
+                                        .fundamental_Hz = 660,
+                                        .bending_stiffness_Nm2 = 4.7e-5,
+                                        .loss = {.quality = 1000}},
+                             .torsion = {.speed_ratio = 7, .impedance_ratio = 3.5, .quality = 15}};
 
   const auto pluck = rosin::simulate_pluck(rig, {.position = 0.3, .force_N = 1, .release_s = 0.004, .duration_s = 0.02});
   const auto bowed = rosin::simulate_stroke(rig, rosin::velocity_curve{rosin::two_exponential_curve<>{}},

@@ -88,8 +88,8 @@ public:
     const T r = sized.renewal(slip_m_s);
     T rod = 0;
     for (std::size_t j = 0; j < states; ++j) rod += r > 0 ? weight_[j] * r / (rate_[j] + r) : T(0);
-    return sized.area_ * (sized.swept(slip_m_s) + sized.leak() + given_.rod.conduction() * rod +
-                          given_.string.conduction() * weight_.back());
+    return sized.area_ *
+           (sized.swept(slip_m_s) + sized.leak() + given_.rod.conduction() * rod + given_.string.conduction() * weight_.back());
   }
 
   [[nodiscard]] T temperature_rise_K() const noexcept { return rise_; }
@@ -146,9 +146,7 @@ private:
   /// All per unit area: 1/s, W/(m2 K), W/(m2 K).
   [[nodiscard]] T renewal(T slip_m_s) const noexcept { return 3 * slip_m_s / (8 * radius_); }
   [[nodiscard]] T swept(T slip_m_s) const noexcept { return slip_m_s * radius_ * given_.layer_capacity_J_m2K() / area_; }
-  [[nodiscard]] T leak() const noexcept {
-    return 4 * given_.string.conductivity_W_mK / (T(3.14159265358979323846) * radius_);
-  }
+  [[nodiscard]] T leak() const noexcept { return 4 * given_.string.conductivity_W_mK / (T(3.14159265358979323846) * radius_); }
 
   contact_heat_parameters<T> given_;
   kernel rate_{}, weight_{}, decay_{}, rod_{}, string_{};

@@ -25,11 +25,11 @@ namespace rosin {
 
 template <class T = double>
 struct elasto_plastic_parameters {
-  T stiffness_1_m = T(1e6);   ///< s0 / N
-  T damping_Ns_m = T(0.0027); ///< s1
-  T viscous_Ns_m = 0;         ///< s2
-  T kinetic = T(0.35);        ///< f_C / N: least value of the steady curve
-  T breakaway = T(0.7);       ///< elastic up to this share of f_C / s0, below 1
+  T stiffness_1_m = T(1e6);    ///< s0 / N
+  T damping_Ns_m = T(0.0027);  ///< s1
+  T viscous_Ns_m = 0;          ///< s2
+  T kinetic = T(0.35);         ///< f_C / N: least value of the steady curve
+  T breakaway = T(0.7);        ///< elastic up to this share of f_C / s0, below 1
 };
 
 template <FrictionCurve Curve>

@@ -21,8 +21,10 @@ struct curve_point {
 template <class C>
 concept FrictionCurve = std::copyable<C> && requires(const C& curve, typename C::scalar v) {
   typename C::scalar;
-  { curve(v) } noexcept -> std::same_as<curve_point<typename C::scalar>>;
-  { curve.convex_from() } noexcept -> std::same_as<typename C::scalar>;
+  { curve(v) }
+  noexcept->std::same_as<curve_point<typename C::scalar>>;
+  { curve.convex_from() }
+  noexcept->std::same_as<typename C::scalar>;
 };
 
 /// a exp(-v / va) + b exp(-v / vb) + c. The default is rosin in steady sliding after Smith and Woodhouse (2000).

@@ -54,7 +54,7 @@ struct converter {
   double noise_N = 0;                 ///< standard deviation of the white noise, at the converter
   double ac_coupled_Hz = 0;           ///< corner of the high-pass; 0: none
   std::vector<hum_line> hum{};
-  int bits = 16;                      ///< 2 to 32
+  int bits = 16;  ///< 2 to 32
 };
 
 /// A recorded channel.
@@ -114,8 +114,8 @@ private:
   for (std::size_t n = 0; n < force_N.size(); ++n) {
     double newtons = couple(with.gain * force_N[n]) + with.noise_N * noise();
     for (const auto& line : with.hum)
-      newtons += line.amplitude_N *
-                 std::cos(2 * pi * line.frequency_Hz * static_cast<double>(n) / sample_rate_Hz + line.phase_rad);
+      newtons +=
+          line.amplitude_N * std::cos(2 * pi * line.frequency_Hz * static_cast<double>(n) / sample_rate_Hz + line.phase_rad);
     const double code = std::nearbyint(newtons * codes_per_newton);
     out.clipped += code >= lowest && code <= highest ? 0 : 1;
     out.codes.push_back(static_cast<std::int32_t>(code >= lowest ? std::min(code, highest) : lowest));

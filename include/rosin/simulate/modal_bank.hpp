@@ -107,10 +107,10 @@ private:
   using pack = Eigen::Array<double, width, 1>;
 
   struct lane {
-    pack re = pack::Zero(), im = pack::Zero();                // state
-    pack turn_re = pack::Zero(), turn_im = pack::Zero();      // e^{p h}
-    pack push_re = pack::Zero(), push_im = pack::Zero();      // e^{p h} b phi_b + b phi_a
-    pack end_re = pack::Zero(), end_im = pack::Zero();        // state to force on the near end
+    pack re = pack::Zero(), im = pack::Zero();            // state
+    pack turn_re = pack::Zero(), turn_im = pack::Zero();  // e^{p h}
+    pack push_re = pack::Zero(), push_im = pack::Zero();  // e^{p h} b phi_b + b phi_a
+    pack end_re = pack::Zero(), end_im = pack::Zero();    // state to force on the near end
     std::array<pack, ports> shape{};
   };
   struct placed_mode {
@@ -157,9 +157,8 @@ private:
     const auto r = respond_over_step(p, h);
     const auto push = b * (r.decay * r.end + r.begin);
     const double w2 = m.omega_rad_s * m.omega_rad_s, in_stress = damping == damping_convention::kelvin_voigt ? 1 : 0;
-    const std::complex<double> end{
-        m.end_stiffness_N_m * (p.real() / w2 + in_stress * m.inverse_quality / m.omega_rad_s),
-        m.end_stiffness_N_m * p.imag() / w2};
+    const std::complex<double> end{m.end_stiffness_N_m * (p.real() / w2 + in_stress * m.inverse_quality / m.omega_rad_s),
+                                   m.end_stiffness_N_m * p.imag() / w2};
     l.turn_re[i] = r.decay.real(), l.turn_im[i] = r.decay.imag();
     l.push_re[i] = push.real(), l.push_im[i] = push.imag();
     l.end_re[i] = end.real(), l.end_im[i] = end.imag();
@@ -167,8 +166,7 @@ private:
     add_gains(l, i, m, b * r.end, end);
   }
 
-  void add_gains(const lane& l, Eigen::Index i, const string_mode& m, std::complex<double> at_once,
-                 std::complex<double> end) {
+  void add_gains(const lane& l, Eigen::Index i, const string_mode& m, std::complex<double> at_once, std::complex<double> end) {
     const double end_at_once = end.real() * at_once.real() + end.imag() * at_once.imag();
     const double yields = 1 / (m.mass_kg * m.omega_rad_s * m.omega_rad_s);
     for (std::size_t j = 0; j < ports; ++j) {

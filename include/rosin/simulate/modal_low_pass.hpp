@@ -61,7 +61,7 @@ public:
     for (int i = 0; i < panels; ++i)
       for (std::size_t j = 0; j < 4; ++j) {
         const double t = -half_width_ + (i + gauss4::node[j]) * step;
-        sum += gauss4::weight[j] * step * (*this)(t) * std::exp(-s * t);
+        sum += gauss4::weight[j] * step * (*this)(t)*std::exp(-s * t);
       }
     return sum;
   }

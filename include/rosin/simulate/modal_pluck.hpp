@@ -64,13 +64,12 @@ struct ringing_mode {
 };
 
 [[nodiscard]] inline std::vector<ringing_mode> ringing_modes(const modal_rig& rig, const modal_pluck& pluck,
-                                                            const modal_settings& settings, double step_s) {
+                                                             const modal_settings& settings, double step_s) {
   constexpr std::complex<double> i{0, 1};
   std::vector<ringing_mode> ringing;
   for (const auto& mode : transverse_modes(rig.string, settings.mode_limit_Hz)) {
     const auto p = mode.pole();
-    const double deflection =
-        pluck.force_N * mode.shape(pluck.position) / (mode.mass_kg * mode.omega_rad_s * mode.omega_rad_s);
+    const double deflection = pluck.force_N * mode.shape(pluck.position) / (mode.mass_kg * mode.omega_rad_s * mode.omega_rad_s);
     const auto zeta = 1.0 + i * p.real() / p.imag();
     const bool in_stress = rig.damping == damping_convention::kelvin_voigt;
     const auto stress = in_stress ? 1.0 + p * mode.inverse_quality / mode.omega_rad_s : 1.0;
@@ -128,8 +127,8 @@ inline void ring_on(std::vector<ringing_mode>& modes, double stop_Hz, int steps_
 /// Sets all signals of a take to zero.
 inline modal_take silent_take(double sample_rate_Hz, std::size_t size) {
   modal_take take{.sample_rate_Hz = sample_rate_Hz};
-  for (auto* signal : {&take.force_near_N, &take.force_far_N, &take.contact_force_N, &take.centre_velocity_m_s,
-                       &take.torsion_velocity_m_s})
+  for (auto* signal :
+       {&take.force_near_N, &take.force_far_N, &take.contact_force_N, &take.centre_velocity_m_s, &take.torsion_velocity_m_s})
     signal->assign(size, 0.0);
   return take;
 }
@@ -162,10 +161,11 @@ inline modal_take silent_take(double sample_rate_Hz, std::size_t size) {
 /// Simulates a pluck; fails where rig, pluck or settings make no sense.
 [[nodiscard]] inline outcome<modal_take> simulate_pluck(const modal_rig& rig, const modal_pluck& pluck,
                                                         const modal_settings& settings = {}) {
-  for (const auto& problem : {problem_with(rig, pluck.position), problem_with(settings)})
+  for (const auto& problem :
+       {problem_with(rig, pluck.position), problem_with(settings), problem_with_duration(pluck.duration_s, settings)})
     if (!problem.empty()) return failure{problem};
-  if (!(pluck.duration_s > 0 && pluck.release_duration_s >= 0 && pluck.release_s > 0))
-    return failure{"pluck: release and duration must be above 0"};
+  if (!(pluck.release_s > 0 && pluck.release_duration_s >= 0 && pluck.release_duration_s <= 0.1))
+    return failure{"pluck: the release must come after the start and last for 0.1 s at most"};
   return detail::run_pluck(rig, pluck, settings);
 }
 

@@ -18,7 +18,8 @@ namespace rosin {
 /// How the rod moves and presses: a function of time.
 template <class M>
 concept RodMotion = std::copyable<M> && requires(const M& motion, double t) {
-  { motion(t) } noexcept -> std::same_as<rod_state>;
+  { motion(t) }
+  noexcept->std::same_as<rod_state>;
 };
 
 /// Lies on the string with its full force from the start, waits, and gathers speed along half a cosine.
@@ -98,9 +99,9 @@ inline void sample_steps(modal_take& take, const stroke_steps& s, const modal_de
 template <FrictionLaw Law, RodMotion Motion = steady_rod>
 [[nodiscard]] outcome<modal_take> simulate_stroke(const modal_rig& rig, Law law, Motion motion = {}, modal_stroke stroke = {},
                                                   const modal_settings& settings = {}) {
-  for (const auto& problem : {problem_with(rig, stroke.position), problem_with(settings)})
+  for (const auto& problem :
+       {problem_with(rig, stroke.position), problem_with(settings), problem_with_duration(stroke.duration_s, settings)})
     if (!problem.empty()) return failure{problem};
-  if (!(stroke.duration_s > 0)) return failure{"stroke: duration must be above 0"};
   const double step_s = 1 / (settings.sample_rate_Hz * settings.oversampling);
   const double limit_Hz = std::min(settings.mode_limit_Hz, 0.49 / step_s);
   const modal_decimator decimate{settings.low_pass(), step_s, settings.oversampling};

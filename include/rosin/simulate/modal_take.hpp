@@ -32,16 +32,16 @@ struct modal_settings {
 /// What the sensors would record, in newtons before any gain or noise, and the truth beside it.
 struct modal_take {
   double sample_rate_Hz = 0;
-  std::vector<double> force_near_N{};         ///< of the string on the near termination
-  std::vector<double> force_far_N{};          ///< of the string on the far termination
-  std::vector<double> contact_force_N{};      ///< of rod or wire on the string
-  std::vector<double> centre_velocity_m_s{};  ///< of the string's centre line at the contact
-  std::vector<double> torsion_velocity_m_s{}; ///< of its surface by torsion; the surface moves with the sum
-  std::vector<double> rod_velocity_m_s{};     ///< bowed takes only
-  std::vector<double> temperature_rise_K{};   ///< of the contact, where the friction law has one
-  std::size_t unconverged = 0;                ///< steps whose contact equation was not solved to tolerance
-  std::size_t slips = 0;                      ///< times the contact went from sticking to slipping
-  double slipping = 0;                        ///< share of the steps of the second half that slipped, 0 to 1
+  std::vector<double> force_near_N{};          ///< of the string on the near termination
+  std::vector<double> force_far_N{};           ///< of the string on the far termination
+  std::vector<double> contact_force_N{};       ///< of rod or wire on the string
+  std::vector<double> centre_velocity_m_s{};   ///< of the string's centre line at the contact
+  std::vector<double> torsion_velocity_m_s{};  ///< of its surface by torsion; the surface moves with the sum
+  std::vector<double> rod_velocity_m_s{};      ///< bowed takes only
+  std::vector<double> temperature_rise_K{};    ///< of the contact, where the friction law has one
+  std::size_t unconverged = 0;                 ///< steps whose contact equation was not solved to tolerance
+  std::size_t slips = 0;                       ///< times the contact went from sticking to slipping
+  double slipping = 0;                         ///< share of the steps of the second half that slipped, 0 to 1
 
   [[nodiscard]] std::size_t size() const noexcept { return force_near_N.size(); }
 };
@@ -63,6 +63,13 @@ enum class bowed_motion { sticking, stick_slip, sliding };
   if (!(s.loss.inverse_q(s.fundamental_Hz) >= 0 && s.loss.inverse_q(s.fundamental_Hz) < 1)) return "string: Q must be above 1";
   if (rig.torsion.present() && !(rig.torsion.quality > 1)) return "torsion: Q must be above 1";
   if (!(position > 0 && position < 1)) return "contact: position must lie between 0 and 1";
+  return {};
+}
+
+/// The same for a take's length.
+[[nodiscard]] inline std::string problem_with_duration(double duration_s, const modal_settings& s) {
+  const double samples = duration_s * s.sample_rate_Hz;
+  if (!(samples >= 1 && samples * s.oversampling <= 1e9)) return "take: it must last for a sample, and for 1e9 steps at most";
   return {};
 }
 

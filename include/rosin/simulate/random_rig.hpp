@@ -73,7 +73,8 @@ inline void draw_friction(random_rig& r, gaussian_source& source) {
                        source.uniform(0.08, 0.2), source.uniform(0.3, 0.4)};
   r.law = velocity_curve<two_exponential_curve<double>>{r.steady_friction};
   const bool thermal = source.uniform() < 0.5;
-  const contact_heat_parameters<double> heat{.layer_m = source.uniform(1e-6, 5e-6), .area_per_newton_m2 = source.uniform(0.7e-7, 1.5e-7)};
+  const contact_heat_parameters<double> heat{.layer_m = source.uniform(1e-6, 5e-6),
+                                             .area_per_newton_m2 = source.uniform(0.7e-7, 1.5e-7)};
   if (!thermal) return;
   const auto strength = design_yield_curve(r.steady_friction, heat.without_string(), r.strokes[0].normal_force_N);
   if (strength) r.law = thermal_plastic<double>{*strength, heat};
@@ -85,7 +86,9 @@ inline void draw_takes(random_rig& r, gaussian_source& source) {
                    .force_N = r.declared.pluck_N[i] * (1 + slip_of_the_pen(source, 0.015)),
                    .release_s = source.uniform(0.0040, 0.0042)};
   for (auto& stroke : r.strokes)
-    stroke = {.speed_m_s = source.uniform(0.1, 0.3), .normal_force_N = source.uniform(0.25, 0.5), .rise_s = source.uniform(0.005, 0.02)};
+    stroke = {.speed_m_s = source.uniform(0.1, 0.3),
+              .normal_force_N = source.uniform(0.25, 0.5),
+              .rise_s = source.uniform(0.005, 0.02)};
 }
 
 inline void draw_notebook(random_rig& r, gaussian_source& source) {
@@ -136,11 +139,14 @@ namespace detail {
 /// One range for each channel in all takes, as a laboratory sets it.
 inline void convert_takes(const random_rig& r, rig_recordings& recordings) {
   for (std::size_t c = 0; c < 2; ++c) {
-    const auto force = [c](const recorded_take& t) { return std::span<const double>{c == 0 ? t.truth.force_near_N : t.truth.force_far_N}; };
+    const auto force = [c](const recorded_take& t) {
+      return std::span<const double>{c == 0 ? t.truth.force_near_N : t.truth.force_far_N};
+    };
     double peak = 0;
     for (const auto& take : recordings.takes)
       for (const double f : force(take)) peak = std::max(peak, std::abs(r.gain[c] * f));
-    const converter channel{.gain = r.gain[c], .newtons_per_full_scale = peak / r.peak_share, .noise_N = r.noise_N, .bits = r.bits};
+    const converter channel{
+        .gain = r.gain[c], .newtons_per_full_scale = peak / r.peak_share, .noise_N = r.noise_N, .bits = r.bits};
     for (std::size_t i = 0; i < recordings.takes.size(); ++i) {
       auto& take = recordings.takes[i];
       take.channels[c] = convert(force(take), recordings.sample_rate_Hz, channel, r.seed * 1000 + 10 * i + c);

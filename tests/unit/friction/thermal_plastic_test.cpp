@@ -61,7 +61,8 @@ TEST_CASE("sticks up to the strength of cold rosin, less after heating, and reco
 TEST_CASE("never feeds energy in; with the rod off there is no force") {
   auto law = usual_law();
   for (int i = 0; i < 5000; ++i) {
-    const rosin::load_line<double> line{std::sin(0.011 * i) + 0.2 * std::sin(0.9 * i), 3.0, 0.2, 0.3 + 0.1 * std::sin(0.002 * i), 1e-6};
+    const rosin::load_line<double> line{std::sin(0.011 * i) + 0.2 * std::sin(0.9 * i), 3.0, 0.2, 0.3 + 0.1 * std::sin(0.002 * i),
+                                        1e-6};
     const auto contact = law(line);
     CHECK(contact.force_N * line.slip(contact.force_N) <= 1e-15);
     CHECK(contact.temperature_rise_K >= 0);

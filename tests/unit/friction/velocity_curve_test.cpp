@@ -23,14 +23,17 @@ std::vector<double> roots_by_scanning(const Curve& curve, double distance, doubl
 }
 
 rosin::load_line<double> line_for(double distance, double normal = 0.3) {
-  return {.free_velocity_m_s = 0.2 - distance, .mobility_m_Ns = 3.67, .rod_velocity_m_s = 0.2, .normal_force_N = normal, .step_s = 1e-6};
+  return {.free_velocity_m_s = 0.2 - distance,
+          .mobility_m_Ns = 3.67,
+          .rod_velocity_m_s = 0.2,
+          .normal_force_N = normal,
+          .step_s = 1e-6};
 }
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("Newton's method finds the largest root, and none where there is none", Curve,
-                   rosin::two_exponential_curve<>, rosin::hyperbolic_curve<>, rosin::stribeck_curve<>,
-                   rosin::power_law_curve<>) {
+TEST_CASE_TEMPLATE("Newton's method finds the largest root, and none where there is none", Curve, rosin::two_exponential_curve<>,
+                   rosin::hyperbolic_curve<>, rosin::stribeck_curve<>, rosin::power_law_curve<>) {
   const Curve curve;
   std::mt19937_64 twister{5};
   std::uniform_real_distribution<double> uniform{0, 1};

@@ -39,7 +39,8 @@ TEST_CASE("16 and 24 bits: error of at most half a step, gain included, any full
 TEST_CASE("noise: white, of the size asked for, and the same for the same seed") {
   const std::vector<double> silence(200000, 0.0);
   const rosin::converter with{.newtons_per_full_scale = 1, .noise_N = 1e-3, .bits = 24};
-  const auto a = rosin::convert(silence, 128e3, with, 7), again = rosin::convert(silence, 128e3, with, 7), b = rosin::convert(silence, 128e3, with, 8);
+  const auto a = rosin::convert(silence, 128e3, with, 7), again = rosin::convert(silence, 128e3, with, 7),
+             b = rosin::convert(silence, 128e3, with, 8);
   CHECK(a.codes == again.codes);
   CHECK(a.codes != b.codes);
   const auto x = a.newtons();

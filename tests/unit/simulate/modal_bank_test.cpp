@@ -58,7 +58,8 @@ TEST_CASE("responses over a step, small and large, against their integrals") {
 TEST_CASE("steps are exact for a force that runs straight between them") {
   for (const bool in_stress : {false, true}) {
     const double position = 0.3, h = 2e-5;
-    rosin::modal_bank<1> bank{three_modes(), in_stress ? rosin::damping_convention::kelvin_voigt : rosin::damping_convention::viscous, {position}, h};
+    rosin::modal_bank<1> bank{
+        three_modes(), in_stress ? rosin::damping_convention::kelvin_voigt : rosin::damping_convention::viscous, {position}, h};
     integrated reference;
     std::mt19937_64 twister{3};
     double last = 0;
@@ -83,7 +84,8 @@ TEST_CASE("steps are exact for a force that runs straight between them") {
 }
 
 TEST_CASE("work done on a lossless string is the energy found in it") {
-  const rosin::string_parameters string{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5};
+  const rosin::string_parameters string{
+      .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5};
   const double h = 1e-6;
   rosin::modal_bank<1> bank{rosin::transverse_modes(string, 60e3), rosin::damping_convention::viscous, {0.27}, h};
   double work = 0, last_force = 0, last_velocity = 0;
@@ -99,7 +101,8 @@ TEST_CASE("work done on a lossless string is the energy found in it") {
 }
 
 TEST_CASE("no sequence of forces gets energy out of it") {
-  const rosin::string_parameters string{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 500}};
+  const rosin::string_parameters string{
+      .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 500}};
   std::mt19937_64 twister{9};
   for (int run = 0; run < 4; ++run) {
     rosin::modal_bank<1> bank{rosin::transverse_modes(string, 250e3), rosin::damping_convention::viscous, {0.3}, 1 / (4 * 128e3)};
@@ -118,7 +121,8 @@ TEST_CASE("no sequence of forces gets energy out of it") {
 
 TEST_CASE("two ports: superposition and reciprocity, in the step and after it") {
   using bank = rosin::modal_bank<2>;
-  const rosin::string_parameters string{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 500}};
+  const rosin::string_parameters string{
+      .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 500}};
   const auto modes = rosin::transverse_modes(string, 100e3);
   bank first{modes, rosin::damping_convention::viscous, {0.2, 0.6}, 1e-6}, second = first, both = first;
   CHECK(first.mobility(0, 1) == doctest::Approx(first.mobility(1, 0)));

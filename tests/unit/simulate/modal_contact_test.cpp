@@ -5,7 +5,11 @@
 namespace {
 
 rosin::modal_rig soft_rig(double quality) {
-  return {.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = quality}},
+  return {.string = {.length_m = 0.314,
+                     .tension_N = 72.5,
+                     .fundamental_Hz = 660,
+                     .bending_stiffness_Nm2 = 4.7e-5,
+                     .loss = {.quality = quality}},
           .torsion = {7, 3.5, 15}};
 }
 

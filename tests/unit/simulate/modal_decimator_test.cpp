@@ -11,7 +11,8 @@ constexpr double step = 1 / (stride * 128e3);
 
 std::vector<double> tone(double f, std::size_t reach, std::size_t samples) {
   std::vector<double> steps(2 * reach + (samples - 1) * stride + 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = std::cos(2 * pi * f * (static_cast<double>(i) - static_cast<double>(reach)) * step + 0.4);
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    steps[i] = std::cos(2 * pi * f * (static_cast<double>(i) - static_cast<double>(reach)) * step + 0.4);
   return steps;
 }
 

@@ -8,7 +8,11 @@ constexpr double pi = 3.14159265358979323846;
 using complex = std::complex<double>;
 
 rosin::modal_rig e_rig(double quality = 1000) {
-  return {.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = quality}}};
+  return {.string = {.length_m = 0.314,
+                     .tension_N = 72.5,
+                     .fundamental_Hz = 660,
+                     .bending_stiffness_Nm2 = 4.7e-5,
+                     .loss = {.quality = quality}}};
 }
 
 /// F0 sum 2/(n pi) sin(n pi beta) Re{(1 + i psi / (2 Q)) exp((i w - w / (2 Q)) t)}, smoothed by brute force.
@@ -148,7 +152,8 @@ TEST_CASE("modes left out hardly matter") {
 TEST_CASE("a release before the recording begins is the tail of the same motion") {
   const rosin::modal_pluck early{.release_s = 1.0 / 128e3, .duration_s = 0.01}, late{.release_s = 0.004, .duration_s = 0.02};
   const auto a = rosin::simulate_pluck(e_rig(), early), b = rosin::simulate_pluck(e_rig(), late);
-  for (std::size_t n = 0; n < a->size(); n += 3) CHECK(a->force_far_N[n] == doctest::Approx(b->force_far_N[n + 511]).epsilon(1e-9));
+  for (std::size_t n = 0; n < a->size(); n += 3)
+    CHECK(a->force_far_N[n] == doctest::Approx(b->force_far_N[n + 511]).epsilon(1e-9));
 }
 
 TEST_CASE("senseless plucks are refused") {

@@ -65,7 +65,8 @@ TEST_CASE("statics: the modes' sums are the deflected string's shape and forces"
 }
 
 TEST_CASE("the compliance left out falls as the cube of the number of modes or faster") {
-  const double few = rosin::residual_compliance_m_N(e_string, 0.3, 100e3), many = rosin::residual_compliance_m_N(e_string, 0.3, 1e6);
+  const double few = rosin::residual_compliance_m_N(e_string, 0.3, 100e3),
+               many = rosin::residual_compliance_m_N(e_string, 0.3, 1e6);
   CHECK(few > 0);
   CHECK(many > 0);
   CHECK(many < few / 8);  // twice as many modes and more, in the range where bending rules

@@ -14,7 +14,11 @@ using complex = std::complex<double>;
 using curve_law = rosin::velocity_curve<rosin::two_exponential_curve<>>;
 
 rosin::modal_rig e_rig(double quality = 1000) {
-  return {.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = quality}},
+  return {.string = {.length_m = 0.314,
+                     .tension_N = 72.5,
+                     .fundamental_Hz = 660,
+                     .bending_stiffness_Nm2 = 4.7e-5,
+                     .loss = {.quality = quality}},
           .torsion = {7, 3.5, 15}};
 }
 
@@ -38,7 +42,8 @@ TEST_CASE("force and velocity at the contact follow from the forces on the ends,
   // f = G (F1 cos k x1 + F2 cos k x2), 0 = F1 sin k x1 - F2 sin k x2; velocity from either end plus the near field.
   // On the line sigma + i w everything that has happened since rest is transformed, start and all.
   const auto rig = e_rig(1e7);
-  const auto take = rosin::simulate_stroke(rig, curve_law{}, rosin::steady_rod{.start_s = 0.001, .rise_s = 0.004}, {.position = 0.3, .duration_s = 0.04}, quick);
+  const auto take = rosin::simulate_stroke(rig, curve_law{}, rosin::steady_rod{.start_s = 0.001, .rise_s = 0.004},
+                                           {.position = 0.3, .duration_s = 0.04}, quick);
   REQUIRE(take);
   CHECK(take->slips > 3);
   const auto& s = rig.string;
@@ -46,8 +51,10 @@ TEST_CASE("force and velocity at the contact follow from the forces on the ends,
   for (double f = 150; f < 20000; f += 777) {
     const complex p{600, 2 * pi * f}, m = -s.linear_density_kg_m() * p * p;
     const double T = s.tension_N, B = s.bending_stiffness_Nm2, x1 = 0.3 * s.length_m, x2 = 0.7 * s.length_m;
-    const complex k2 = 2.0 * m / (T + std::sqrt(T * T + 4 * B * m)), k = std::sqrt(k2), K = B * k2 / T, G = (1.0 + 2.0 * K) / (1.0 + K);
-    const complex F1 = transform(take->force_near_N, p), F2 = transform(take->force_far_N, p), force = transform(take->contact_force_N, p);
+    const complex k2 = 2.0 * m / (T + std::sqrt(T * T + 4 * B * m)), k = std::sqrt(k2), K = B * k2 / T,
+                  G = (1.0 + 2.0 * K) / (1.0 + K);
+    const complex F1 = transform(take->force_near_N, p), F2 = transform(take->force_far_N, p),
+                  force = transform(take->contact_force_N, p);
     const complex velocity = transform(take->centre_velocity_m_s, p);
     const complex near_field = -p * force / (2.0 * std::sqrt(k2 + T / B) * (T + 2.0 * B * k2));
     f_error += std::norm(G * (F1 * std::cos(k * x1) + F2 * std::cos(k * x2)) - force), f_size += std::norm(force);
@@ -60,14 +67,16 @@ TEST_CASE("force and velocity at the contact follow from the forces on the ends,
 }
 
 TEST_CASE("sticking, the surface moves with the rod; slipping, the force lies on the curve") {
-  const auto take = rosin::simulate_stroke(e_rig(), curve_law{}, rosin::steady_rod{.start_s = 0.001, .rise_s = 0.004}, {.duration_s = 0.05}, quick);
+  const auto take = rosin::simulate_stroke(e_rig(), curve_law{}, rosin::steady_rod{.start_s = 0.001, .rise_s = 0.004},
+                                           {.duration_s = 0.05}, quick);
   REQUIRE(take);
   CHECK(rosin::motion_of(*take) == rosin::bowed_motion::stick_slip);
   CHECK(take->unconverged == 0);
   const rosin::two_exponential_curve<> curve;
   std::size_t stuck = 0, slid = 0;
   std::vector<double> slip(take->size());
-  for (std::size_t n = 0; n < slip.size(); ++n) slip[n] = take->centre_velocity_m_s[n] + take->torsion_velocity_m_s[n] - take->rod_velocity_m_s[n];
+  for (std::size_t n = 0; n < slip.size(); ++n)
+    slip[n] = take->centre_velocity_m_s[n] + take->torsion_velocity_m_s[n] - take->rod_velocity_m_s[n];
   for (std::size_t n = 3000; n + 6 < slip.size(); ++n) {
     stuck += std::abs(slip[n]) < 5e-3 ? 1U : 0U;
     if (*std::max_element(&slip[n - 6], &slip[n + 7]) > -0.4) continue;
@@ -79,7 +88,8 @@ TEST_CASE("sticking, the surface moves with the rod; slipping, the force lies on
 }
 
 TEST_CASE("energy: friction takes most of the rod's work, the lossy string the rest, and neither gives any back") {
-  const auto take = rosin::simulate_stroke(e_rig(), curve_law{}, rosin::steady_rod{.start_s = 0.001, .rise_s = 0.004}, {.duration_s = 0.1}, quick);
+  const auto take = rosin::simulate_stroke(e_rig(), curve_law{}, rosin::steady_rod{.start_s = 0.001, .rise_s = 0.004},
+                                           {.duration_s = 0.1}, quick);
   double rod = 0, friction = 0, string = 0;
   for (std::size_t n = 6400; n < take->size(); ++n) {
     const double f = take->contact_force_N[n], surface = take->centre_velocity_m_s[n] + take->torsion_velocity_m_s[n];
@@ -96,15 +106,19 @@ TEST_CASE("with a smooth law the motion converges as the steps get finer") {
   const rosin::velocity_curve law{rosin::hyperbolic_curve<>{.dynamic = 0.3, .at_rest = 0.5, .v0_m_s = 0.5}};
   const rosin::steady_rod rod{.start_s = 0.001, .rise_s = 0.004};
   std::vector<rosin::modal_take> takes;
-  for (const int os : {2, 4, 16}) takes.push_back(*rosin::simulate_stroke(e_rig(), law, rod, {.duration_s = 0.012}, {.oversampling = os, .mode_limit_Hz = 120e3}));
-  const double coarse = difference(takes[2].force_near_N, takes[0].force_near_N), fine = difference(takes[2].force_near_N, takes[1].force_near_N);
+  for (const int os : {2, 4, 16})
+    takes.push_back(
+        *rosin::simulate_stroke(e_rig(), law, rod, {.duration_s = 0.012}, {.oversampling = os, .mode_limit_Hz = 120e3}));
+  const double coarse = difference(takes[2].force_near_N, takes[0].force_near_N),
+               fine = difference(takes[2].force_near_N, takes[1].force_near_N);
   CHECK(takes[1].slips > 0);
   CHECK(fine < 0.6 * coarse);
   CHECK(fine < 0.05);
 }
 
 TEST_CASE("a rod that is too slow or pressed too hard does not make the string slip, and that is reported") {
-  const auto take = rosin::simulate_stroke(e_rig(), curve_law{}, rosin::steady_rod{.speed_m_s = 0.001, .normal_force_N = 3}, {.duration_s = 0.02}, quick);
+  const auto take = rosin::simulate_stroke(e_rig(), curve_law{}, rosin::steady_rod{.speed_m_s = 0.001, .normal_force_N = 3},
+                                           {.duration_s = 0.02}, quick);
   REQUIRE(take);
   CHECK(take->slips == 0);
   CHECK(rosin::motion_of(*take) == rosin::bowed_motion::sticking);
@@ -119,7 +133,8 @@ TEST_CASE("any law and any motion of the rod: thermal and elasto-plastic, a rod 
   CHECK(std::abs(warm->contact_force_N[150]) < 1e-12);
   CHECK(*std::max_element(warm->contact_force_N.begin(), warm->contact_force_N.end()) > 0.2);
   CHECK(*std::max_element(warm->temperature_rise_K.begin(), warm->temperature_rise_K.end()) > 5);
-  const auto bristles = rosin::simulate_stroke(e_rig(), rosin::elasto_plastic<rosin::two_exponential_curve<>>{}, rod, {.duration_s = 0.01}, quick);
+  const auto bristles =
+      rosin::simulate_stroke(e_rig(), rosin::elasto_plastic<rosin::two_exponential_curve<>>{}, rod, {.duration_s = 0.01}, quick);
   REQUIRE(bristles);
   CHECK(bristles->unconverged == 0);
   CHECK(bristles->temperature_rise_K.empty());

@@ -7,7 +7,11 @@
 namespace {
 
 rosin::modal_rig sound_rig() {
-  return {.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}}};
+  return {.string = {.length_m = 0.314,
+                     .tension_N = 72.5,
+                     .fundamental_Hz = 660,
+                     .bending_stiffness_Nm2 = 4.7e-5,
+                     .loss = {.quality = 1000}}};
 }
 
 bool complains(const std::string& message, const char* about) { return message.find(about) != std::string::npos; }
@@ -40,6 +44,13 @@ TEST_CASE("settings: the low-pass ends where the samples do, and the modes reach
   CHECK(complains(rosin::problem_with({.oversampling = 0}), "oversampling"));
   CHECK(complains(rosin::problem_with({.mode_limit_Hz = 50e3}), "modes"));
   CHECK(complains(rosin::problem_with({.pass_Hz = 30e3, .stop_Hz = 20e3}), "low-pass"));
+}
+
+TEST_CASE("a take lasts for a sample at least, and not for ever") {
+  CHECK(rosin::problem_with_duration(0.36, {}).empty());
+  for (const double bad :
+       {0.0, -1.0, 1e-6, 1e6, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+    CHECK(complains(rosin::problem_with_duration(bad, {}), "take"));
 }
 
 TEST_CASE("motions without slip are told from bowed motion") {
