@@ -164,8 +164,9 @@ inline modal_take silent_take(double sample_rate_Hz, std::size_t size) {
   for (const auto& problem :
        {problem_with(rig, pluck.position), problem_with(settings), problem_with_duration(pluck.duration_s, settings)})
     if (!problem.empty()) return failure{problem};
-  if (!(pluck.release_s > 0 && pluck.release_duration_s >= 0 && pluck.release_duration_s <= 0.1))
-    return failure{"pluck: the release must come after the start and last for 0.1 s at most"};
+  if (!(pluck.release_s > 0 && pluck.release_s < pluck.duration_s)) return failure{"pluck: the release must lie within the take"};
+  if (!(pluck.release_duration_s >= 0 && pluck.release_duration_s <= 0.1))
+    return failure{"pluck: the release must last for 0.1 s at most"};
   return detail::run_pluck(rig, pluck, settings);
 }
 

@@ -159,6 +159,8 @@ TEST_CASE("a release before the recording begins is the tail of the same motion"
 TEST_CASE("senseless plucks are refused") {
   CHECK(!rosin::simulate_pluck(e_rig(), {.position = 1.2}));
   CHECK(!rosin::simulate_pluck(e_rig(), {.release_s = 0}));
+  CHECK(!rosin::simulate_pluck(e_rig(), {.release_s = 0.2}));
+  CHECK(!rosin::simulate_pluck(e_rig(), {.release_duration_s = 1}));
   CHECK(!rosin::simulate_pluck(e_rig(), {.duration_s = -1}));
   CHECK(!rosin::simulate_pluck({}, {}));
   CHECK(rosin::simulate_pluck({}, {}).error() == "string: length, tension and pitch must be above 0");
