@@ -117,7 +117,7 @@ inline std::size_t steadiest(std::span<const double> x, double period, std::size
   const auto part = [&](std::span<const double> x) { return x.subspan(out.begin, count); };
 
   double step = 0.004 * period;  // golden-section steps would do; three shrinking scans are as good and cannot be fooled
-  for (int scan = 0; scan < 5; ++scan, step /= 4) {
+  for (int scan = 0; scan < 7; ++scan, step /= 4) {
     double best = period, least = std::numeric_limits<double>::infinity();
     for (int i = -4; i <= 4; ++i) {
       const double tried = period + i * step / 2;
