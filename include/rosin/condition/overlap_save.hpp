@@ -74,15 +74,16 @@ public:
     const std::size_t length = in[0].size();
     for (std::size_t begin = 0; begin < length; begin += lanes * useful_) {
       const std::ptrdiff_t start = static_cast<std::ptrdiff_t>(begin) - taps_.last;
-      const bool inside = start >= 0 && static_cast<std::size_t>(start) + lanes * useful_ + fft_.size() <= length;
+      const bool in_inside = start >= 0 && static_cast<std::size_t>(start) + lanes * useful_ + fft_.size() <= length;
+      const bool out_inside = begin + lanes * useful_ <= length;
       for (std::size_t pair = 0; pair < spectra_.size(); ++pair) {
-        inside ? load<true>(in, pair, start) : load<false>(in, pair, start);
+        in_inside ? load<true>(in, pair, start) : load<false>(in, pair, start);
         fft_.forward(spectra_[pair]);
       }
       for (std::size_t pair = 0; 2 * pair < outputs_; ++pair) {
         combine(pair);
         fft_.inverse(sum_);
-        inside ? save<true>(out, pair, begin) : save<false>(out, pair, begin);
+        out_inside ? save<true>(out, pair, begin) : save<false>(out, pair, begin);
       }
     }
   }

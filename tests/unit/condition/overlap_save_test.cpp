@@ -83,6 +83,22 @@ TEST_CASE_TEMPLATE("it is the direct sum to rounding, for any number of channels
     }
 }
 
+TEST_CASE("kernels may lie far from lag zero, beyond the record even") {
+  for (const int first : {-5000, -4001, -3000, -300, 300, 3000, 4001, 5000}) {
+    CAPTURE(first);
+    const std::vector<kernel> shifted{{first, laws::noise<double>(9, 1)}};
+    rosin::block_convolver<double> convolver(1, shifted, 64);
+    const std::vector<std::vector<double>> in{laws::noise<double>(4001, 2)};
+    const std::vector<std::vector<double>> out = run<double>(convolver, in);
+    double worst = 0;
+    for (std::size_t n = 0; n < in[0].size(); ++n) worst = std::max(worst, std::abs(out[0][n] - by_definition(shifted, in, 0, n)));
+    CHECK(worst < 1e-14);
+    const rosin::sample_range valid = convolver.valid(4001);
+    CHECK(valid.begin <= valid.end);
+    CHECK(valid.end <= 4001);
+  }
+}
+
 TEST_CASE("a plan is used again for records of other lengths") {
   const std::vector<kernel> kernels = kernels_for(2, 2);
   rosin::block_convolver<double> convolver(2, kernels);
