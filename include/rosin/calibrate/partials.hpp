@@ -33,7 +33,7 @@ struct partial {
   double split_Hz = 0;                   ///< between the two
   double lasts_s = 0;                    ///< length of the stretch that was fitted
   double signal_to_noise = 0;            ///< energy of the partial against the noise at it (matched filter), a power ratio
-  double misfit = 0;                     ///< energy left over in the band, as a part of the whole
+  double misfit = 0;                     ///< energy left over beyond the noise around, as a part of the whole
   double weight = 0;                     ///< in the fit of pitch and inharmonicity: 1 taken as it is, 0 left out
 
   [[nodiscard]] double inverse_q() const noexcept { return decay_per_s / (3.14159265358979323846 * frequency_Hz); }
@@ -63,24 +63,30 @@ inline std::size_t audible_samples(complex_span z, double rate_Hz) {
   return std::max(last * width, std::min<std::size_t>(z.size(), 8));
 }
 
-/// Power that a filter matched to the decay finds beside the line, per unit of its energy.
-inline double noise_beside(complex_span left, double rate_Hz, const damped_part& p, double flat_Hz) {
+struct line_noise {
+  double at_line;  ///< density of a white complex noise that would be as strong at the line
+  double away;     ///< the same some way off: the noise of the recording
+};
+
+/// What a filter matched to the decay finds beside the line in what the fit left over.
+inline line_noise noise_beside(complex_span left, double rate_Hz, const damped_part& p, double flat_Hz) {
   const double lasts = static_cast<double>(left.size()) / rate_Hz, decay = std::max(p.decay_per_s, 0.0);
   const double step = std::max(1 / lasts, 2 * decay / turn);
-  double near = 0, all = 0, energy = 0;
-  int near_count = 0, count = 0;
+  double energy = 0, near = 0, all = 0;
+  std::vector<double> powers;
   for (std::size_t j = 0; j < left.size(); ++j) energy += std::exp(-2 * decay * static_cast<double>(j) / rate_Hz);
   for (int k = -12; k <= 12; ++k) {
     if (k == 0 || (std::abs(k) > 3 && std::abs(p.detuning_rad_s / turn + k * step) > flat_Hz)) continue;
     const std::complex<double> turn_by = std::polar(std::exp(-decay / rate_Hz), -(p.detuning_rad_s + turn * k * step) / rate_Hz);
     std::complex<double> sum = 0, w = 1;
     for (const auto& r : left) sum += w * r, w *= turn_by;
-    all += std::norm(sum), ++count;
-    if (std::abs(k) <= 3) near += std::norm(sum), ++near_count;
+    powers.push_back(std::norm(sum) / energy);
+    all += powers.back();
+    if (std::abs(k) <= 3) near += powers.back() / 6;
   }
-  near /= near_count * energy;
-  all /= count * energy;
-  return near > 2 * all ? near : all;
+  all /= static_cast<double>(powers.size());
+  std::nth_element(powers.begin(), powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 2), powers.end());
+  return {near > 2 * all ? near : all, powers[powers.size() / 2] / 0.693};
 }
 
 /// Covariance of the parameters; the noise as density S = E|n|^2 of a white complex noise.
@@ -96,18 +102,20 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
 
 }  // namespace detail
 
-/// Noise at the line of a track, sum |n|^2 a sample of white complex noise of that density.
-[[nodiscard]] inline double noise_of(const partial_track& t) {
+/// Noise at the line of a track and off it; never less than rounding.
+[[nodiscard]] inline detail::line_noise noise_of(const partial_track& t) {
   const auto left = detail::left_over(t.samples, t.rate_Hz, t.fit.model);
   const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
   const double rounding = 1e-24 * detail::energy_of(t.samples) / static_cast<double>(t.samples.size());
-  return std::max(detail::noise_beside(left, t.rate_Hz, detail::strongest(t.fit.model, lasts), t.flat_to_Hz), rounding);
+  const auto noise = detail::noise_beside(left, t.rate_Hz, detail::strongest(t.fit.model, lasts), t.flat_to_Hz);
+  return {std::max(noise.at_line, rounding), noise.away};
 }
 
 /// What a track says of its partial.
 [[nodiscard]] inline partial summary_of(const partial_track& t) {
-  const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz, noise = noise_of(t);
-  const Eigen::MatrixXd covariance = detail::line_covariance(t.fit, noise);
+  const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
+  const detail::line_noise noise = noise_of(t);
+  const Eigen::MatrixXd covariance = detail::line_covariance(t.fit, noise.at_line);
   partial p;
   p.number = t.number;
   p.lasts_s = lasts;
@@ -139,8 +147,9 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
   p.amplitude_sd = std::sqrt(loudness.dot(covariance * loudness) / power);
   p.doubled = t.fit.model.parts.size() > 1;
   if (p.doubled) p.split_Hz = std::abs(t.fit.model.parts[0].detuning_rad_s - t.fit.model.parts[1].detuning_rad_s) / detail::turn;
-  p.signal_to_noise = energy * t.rate_Hz / noise;
-  p.misfit = t.fit.residual / std::max(detail::energy_of(t.samples), 1e-300);
+  p.signal_to_noise = energy * t.rate_Hz / noise.at_line;
+  const double expected = noise.away * static_cast<double>(t.samples.size()) * 2 * t.flat_to_Hz / t.rate_Hz;
+  p.misfit = std::max(t.fit.residual - 1.5 * expected, 0.0) / std::max(detail::energy_of(t.samples), 1e-300);
   return p;
 }
 

@@ -1,0 +1,175 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Calibration from one channel that knows nothing of newtons: a pickup or a microphone, a plucked or struck string. Out come the
+// partials, the pitch and inharmonicity behind them (f_n = n f0 sqrt(1 + b n^2)) and the loss law, each with the standard deviation
+// that the data deserve: errors of the single lines, and their scatter about the law, which is mostly the supports' doing.
+//
+//     search (partial_search) -> one or two lines each (partials) -> common glide (pickup_glide) -> pitch, loss (pickup_regression)
+//
+// Gains, force and position of the pluck cannot be had from such a channel: for these take two force channels (pluck_fit.hpp).
+//
+#pragma once
+
+#include <rosin/calibrate/partial_search.hpp>
+#include <rosin/calibrate/partials.hpp>
+#include <rosin/calibrate/pickup_glide.hpp>
+#include <rosin/calibrate/pickup_loss.hpp>
+#include <rosin/calibrate/pickup_pitch.hpp>
+#include <rosin/core/outcome.hpp>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rosin {
+
+struct pickup_options {
+  std::optional<double> release_s{};  ///< when the string is let go; without it: where the sound rises
+  double skip_s = 0.05;               ///< of the sound after that: attack, and the worst of the glide
+  double end_s = std::numeric_limits<double>::infinity();  ///< the string rings freely up to here, or to the end
+  double search_range = 0.06;         ///< how far the pitch may be from the nominal one, as a part of it
+  double highest_Hz = std::numeric_limits<double>::infinity();
+  int partials_at_most = 64;
+};
+
+struct pickup_fit {
+  double fundamental_Hz = 0, fundamental_sd = 0;  ///< of the string without stiffness: mode n at n f0 sqrt(1 + b n^2)
+  double inharmonicity = 0, inharmonicity_sd = 0;
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of f0 and b
+  loss_estimate loss;
+  std::vector<partial> partials;
+  double scatter_Hz = 0;        ///< of the partials about the law, beyond their own errors (of the first one, if in_proportion)
+  bool in_proportion = false;   ///< the scatter grows with the number of the partial
+  pitch_glide glide;            ///< taken out of all partials; relative is 0 where none was found
+  double glide_sd = 0;
+  double start_s = 0;           ///< of what was fitted, in the time of the recording
+  std::vector<std::string> warnings;
+};
+
+namespace detail {
+
+/// The first 5 ms whose power is a tenth of the loudest's.
+inline double sound_begins_s(std::span<const double> x, double rate_Hz) {
+  const auto block = std::max<std::size_t>(1, static_cast<std::size_t>(0.005 * rate_Hz));
+  std::vector<double> power;
+  for (std::size_t j = 0; j + block <= x.size(); j += block) {
+    double sum = 0;
+    for (const double v : x.subspan(j, block)) sum += v * v;
+    power.push_back(sum);
+  }
+  const double loud = 0.1 * *std::max_element(power.begin(), power.end());
+  const auto first = std::find_if(power.begin(), power.end(), [&](double p) { return p >= loud; });
+  return static_cast<double>(first - power.begin()) * static_cast<double>(block) / rate_Hz;
+}
+
+inline std::string pickup_input_problem(std::span<const double> x, double rate_Hz, double nominal_Hz, const pickup_options& o) {
+  if (!(rate_Hz > 0) || !std::isfinite(rate_Hz)) return "sampling rate: has to be positive";
+  if (!(nominal_Hz >= 5) || !(nominal_Hz < rate_Hz / 5)) return "nominal fundamental: has to lie between 5 Hz and a fifth of the sampling rate";
+  if (!(o.search_range > 0) || !(o.search_range < 0.3)) return "search_range: has to lie between 0 and 0.3";
+  for (std::size_t j = 0; j < x.size(); ++j)
+    if (!std::isfinite(x[j])) return "sample " + std::to_string(j) + ": not a finite number";
+  if (std::all_of(x.begin(), x.end(), [](double v) { return v == 0; })) return "signal: there is nothing but zeros";
+  return {};
+}
+
+inline bool believable(const partial& p, double f0) {
+  return std::isfinite(p.frequency_sd) && std::isfinite(p.decay_sd) && p.signal_to_noise > 30 && p.frequency_sd < 0.05 * f0;
+}
+
+inline void drop_unbelievable(std::vector<partial_track>& tracks, double f0) {
+  std::erase_if(tracks, [&](const partial_track& t) { return !believable(summary_of(t), f0); });
+}
+
+inline void fit_laws(pickup_fit& fit, const found_partials& found, const glide_estimate& glide) {
+  std::vector<numbered_frequency> lines;
+  std::vector<measured_decay> decays;
+  for (const partial& p : fit.partials) {
+    lines.push_back({p.number, p.frequency_Hz, p.frequency_sd});
+    decays.push_back({p.frequency_Hz, p.decay_per_s, p.decay_sd});
+  }
+  const robust_fit pitch = fit_pitch(lines, found.fundamental_Hz, found.inharmonicity);
+  const Eigen::VectorXd share = Eigen::Map<const Eigen::VectorXd>(glide.share_Hz.data(), static_cast<Eigen::Index>(glide.share_Hz.size()));
+  const Eigen::Vector2d common = glide.sd * (pitch.gain * share);
+  fit.fundamental_Hz = pitch.value[0];
+  fit.inharmonicity = pitch.value[1];
+  fit.covariance = pitch.covariance + common * common.transpose();
+  fit.fundamental_sd = std::sqrt(fit.covariance(0, 0));
+  fit.inharmonicity_sd = std::sqrt(fit.covariance(1, 1));
+  fit.scatter_Hz = pitch.scatter;
+  fit.in_proportion = pitch.in_proportion;
+  for (std::size_t i = 0; i < fit.partials.size(); ++i) fit.partials[i].weight = pitch.weight[static_cast<Eigen::Index>(i)];
+  std::erase_if(decays, [](const measured_decay& d) { return !(d.decay_per_s > -5 * d.sd_per_s); });
+  if (!decays.empty()) fit.loss = fit_loss(decays);
+}
+
+inline void add_warnings(pickup_fit& fit, double nominal_Hz) {
+  const auto percent = [](double v) { return std::to_string(std::round(1000 * v) / 10).substr(0, v < 0 ? 5 : 4) + " %"; };
+  const auto say = [&](bool when, std::string what) {
+    if (when) fit.warnings.push_back(std::move(what));
+  };
+  const auto count = fit.partials.size();
+  std::size_t left_out = 0, growing = 0, odd = 0;
+  for (const partial& p : fit.partials) {
+    left_out += p.weight == 0 ? 1U : 0U;
+    growing += p.decay_per_s < p.decay_sd ? 1U : 0U;
+    odd += p.misfit > 0.1 ? 1U : 0U;
+  }
+  const double off = fit.fundamental_Hz / nominal_Hz - 1;
+  const std::string of = " of " + std::to_string(count) + " partials ";
+  say(std::abs(off) > 0.02, "pitch: " + percent(off) + " from the nominal one");
+  say(count < 6, "partials: only " + std::to_string(count) + " found; errors of pitch and inharmonicity are rough");
+  say(!(fit.inharmonicity > 2 * fit.inharmonicity_sd), "inharmonicity: not told from zero by these partials");
+  say(5 * left_out > count, "partials: " + std::to_string(left_out) + of + "lie far off the law of a stiff string");
+  say(5 * growing > count, "decay: " + std::to_string(growing) + of + "do not clearly decay; a string that is let go does");
+  say(5 * odd > count, "decay: " + std::to_string(odd) + of + "are not one or two damped lines (more than a tenth of their energy is left over)");
+  say(std::abs(fit.glide.relative) > 1e-3, "pitch glide: sharp by " + percent(fit.glide.relative) + " at the start; taken out");
+}
+
+}  // namespace detail
+
+/// Fits a recording of one free ringing. nominal_Hz: the pitch to be expected, within options.search_range.
+[[nodiscard]] inline outcome<pickup_fit> fit_pickup(std::span<const double> signal, double rate_Hz, double nominal_Hz,
+                                                    const pickup_options& options = {}) {
+  const auto refuse = [](const std::string& why) { return outcome<pickup_fit>{failure{why}}; };
+  if (const auto problem = detail::pickup_input_problem(signal, rate_Hz, nominal_Hz, options); !problem.empty()) return refuse(problem);
+  const auto samples = [&](double t) { return static_cast<std::size_t>(t * rate_Hz); };
+  const double duration = static_cast<double>(signal.size()) / rate_Hz, end = std::min(options.end_s, duration);
+  const double least = std::max(0.15, 12 / nominal_Hz);
+  const double begin = options.release_s ? *options.release_s : detail::sound_begins_s(signal.first(samples(end)), rate_Hz);
+  const baseband_bank bank{signal, rate_Hz, std::min(40.0, 0.45 * nominal_Hz)};
+  const double start = begin + std::max(options.skip_s, bank.settling_s()), stop = end - bank.settling_s() / 2;
+  if (!(begin >= 0) || stop - start < least) return refuse("signal: less than " + std::to_string(least) + " s of ringing to look at");
+
+  const auto first = signal.subspan(samples(start), samples(std::min(end - start, std::max(1.0, 50 / nominal_Hz))));
+  const auto found = find_partials(first, rate_Hz, nominal_Hz, options.search_range, options.partials_at_most);
+  const double f0 = found.fundamental_Hz;
+  const double tolerance = std::min(0.12 * f0, 3.0);
+  std::vector<partial_track> tracks;
+  for (const auto& line : found.partials)
+    if (line.frequency_Hz < options.highest_Hz)
+      if (auto t = track_partial(bank, line.number, line.frequency_Hz, tolerance, start, stop)) tracks.push_back(std::move(*t));
+  detail::drop_unbelievable(tracks, f0);
+  if (tracks.size() < 3) return refuse("partials: fewer than three stand out near multiples of the nominal fundamental");
+
+  const glide_estimate glide = estimate_glide(tracks);
+  if (glide.glide.relative != 0) take_out_glide(tracks, glide.glide, 1.5 * tolerance);
+  pickup_fit fit;
+  for (const auto& t : tracks) fit.partials.push_back(summary_of(t));
+  fit.glide = glide.glide;
+  fit.glide_sd = glide.sd;
+  fit.start_s = start;
+  detail::fit_laws(fit, found, glide);
+  if (!std::isfinite(fit.fundamental_sd) || !std::isfinite(fit.inharmonicity_sd)) return refuse("partials: they do not tell pitch and inharmonicity");
+  detail::add_warnings(fit, nominal_Hz);
+  return fit;
+}
+
+}  // namespace rosin
