@@ -16,7 +16,8 @@
 // psi is what conventions of damping differ in, all else being equal: -1 for a viscous force on each mode (no force at the
 // ends from it), +1 where the loss is in the elastic stress (and is felt by the ends). It is a nuisance of order 1/Q and is fitted.
 //
-// A band-limited recording sees partial n with the weight W(f_n); around t0 itself nothing has arrived at the ends yet.
+// A band-limited recording sees partial n with the weight W(s_n / (2 pi i)): what a filter does to a line that decays is its
+// response at a complex frequency, which on the band's flank is a turn in phase. Around t0 itself nothing has arrived at the ends yet.
 //
 #pragma once
 
@@ -52,6 +53,14 @@ struct ringing_string {
 /// Forces on {near, far} before the release, per newton of F.
 [[nodiscard]] inline std::array<double, 2> static_forces(double position) noexcept { return {1 - position, position}; }
 
+/// The band's window (band.hpp) at the complex frequency of a pole: what it makes of exp(pole t).
+[[nodiscard]] inline std::complex<double> band_weight(const band& limits, std::complex<double> pole) noexcept {
+  const std::complex<double> f = pole / std::complex<double>(0, 2 * std::numbers::pi);
+  if (f.real() <= limits.pass_Hz || f.real() >= limits.stop_Hz) return limits(f.real());
+  const std::complex<double> b = (limits.stop_Hz - f) / (limits.stop_Hz - limits.pass_Hz);
+  return b * b * b * b * (35.0 - b * (84.0 - b * (70.0 - b * 20.0)));
+}
+
 /// Partials of a pluck of 1 N at `position` (0..1), amplitudes at `age_s` after the release, up to the edge of the band or
 /// `most` partials.
 [[nodiscard]] inline std::vector<damped_line> pluck_lines(const ringing_string& string, double position, double age_s,
@@ -63,7 +72,7 @@ struct ringing_string {
     const double half = string.loss.inverse_q(f) / 2, w = 2 * std::numbers::pi * f;
     const std::complex<double> pole{-w * half, w * std::sqrt(std::max(0.0, 1 - half * half))};
     const double angle = n * std::numbers::pi;
-    const std::complex<double> near = limits(f) * 2 / angle * std::sin(angle * position) *
+    const std::complex<double> near = band_weight(limits, pole) * 2.0 / angle * std::sin(angle * position) *
                                       std::complex<double>(1, string.convention * half) * std::exp(pole * age_s);
     lines.push_back({pole, {near, n % 2 ? near : -near}});
   }
