@@ -94,6 +94,7 @@
 #include <rosin/simulate/modal_string.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 #include <rosin/simulate/modal_take.hpp>
+#include <rosin/simulate/profiled_rod.hpp>
 #include <rosin/simulate/random_rig.hpp>
 
 #include <rosin/report/csv.hpp>

@@ -121,6 +121,7 @@ struct simulate_section {
   std::optional<double> rate_Hz, duration_s, noise_N;
   std::optional<int> bits;  ///< 16, 24 or 32; 0: float
   std::optional<std::int64_t> seed;
+  bool nominal_scatter = false;  ///< the true string differs from the declared one, within the tolerances
 };
 
 struct rig {

@@ -88,6 +88,7 @@ inline simulate_section read_simulate(toml_fields fields) {
   s.duration_s = fields.number("duration_s", up_to(3600));
   s.noise_N = fields.number("noise_N", zero_to(100));
   s.seed = fields.integer("seed", 0, std::numeric_limits<std::int64_t>::max());
+  s.nominal_scatter = fields.flag("nominal_scatter");
   if (const auto bits = fields.integer("bits", 0, 32)) {
     if (*bits == 0 || *bits == 16 || *bits == 24 || *bits == 32) s.bits = static_cast<int>(*bits);
     else fields.refuse("bits", "must be 16, 24, 32, or 0 for float, is " + std::to_string(*bits));

@@ -90,6 +90,7 @@ TEST_CASE("[friction] and [simulate]") {
       {"bits = 16", "bits = 16.0", "rig.toml:41: simulate.bits: must be a whole number"},
       {"noise_N = 3e-4", "noise_N = -1", "rig.toml:42: simulate.noise_N: must be at least 0 and at most 100, is -1"},
       {"seed = 1", "seed = -1", "rig.toml:43: simulate.seed: must be 0 ... 9223372036854775807, is -1"},
+      {"seed = 1", "nominal_scatter = 1", "rig.toml:43: simulate.nominal_scatter: must be true or false"},
       {"seed = 1", "sede = 1", "rig.toml:43: simulate.sede: unknown key; did you mean seed?"},
   };
   CHECK_BAD_KEYS(rows)

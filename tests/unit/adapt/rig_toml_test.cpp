@@ -33,6 +33,10 @@ TEST_CASE("everything in the file arrives where it belongs") {
   CHECK(r->friction->constant == 0.35);
   CHECK(r->simulate->bits == 16);
   CHECK(r->simulate->seed == 1);
+  CHECK_FALSE(r->simulate->nominal_scatter);
+  const auto scattered = rosin::parse_rig(test::changed("seed = 1", "nominal_scatter = true"), "rig.toml");
+  REQUIRE(scattered);
+  CHECK(scattered->simulate->nominal_scatter);
   REQUIRE(r->takes.size() == 3);
   CHECK(r->takes[0].kind == rosin::take_kind::pluck);
   CHECK(r->takes[0].force_N == 1.0);
