@@ -24,9 +24,9 @@ namespace rosin {
 
 /// One recorded pluck: forces on the terminations in nominal newtons.
 struct pluck_take {
-  std::string name;
+  std::string name{};
   double rate_Hz = 0;
-  std::array<std::vector<double>, 2> force_N;  ///< near, far; equally long
+  std::array<std::vector<double>, 2> force_N{};  ///< near, far; equally long
   double strength_N = 1;                       ///< nominal breaking force
   double strength_tolerance = 0.03;            ///< relative, a limit: two standard deviations
   double position = 0.5;                       ///< declared, from the near end
