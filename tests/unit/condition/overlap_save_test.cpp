@@ -78,6 +78,8 @@ TEST_CASE_TEMPLATE("it is the direct sum to rounding, for any number of channels
   for (const std::size_t channels : {1u, 2u, 3u})
     for (const std::size_t length : {1u, 40u, 300u, 4001u}) {
       is_the_direct_sum<T, side_by_side>(channels, 2, length, 0);
+      is_the_direct_sum<T, side_by_side>(channels, 1, length, 0);
+      is_the_direct_sum<T, one_by_one>(1, channels, length, 64);
       is_the_direct_sum<T, side_by_side>(2, channels, length, 256);
       is_the_direct_sum<T, one_by_one>(channels, 5 - channels, length, 256);
     }
