@@ -40,14 +40,28 @@
 #include <rosin/acquire/spectrum_line.hpp>
 
 #include <rosin/condition/ac_coupling.hpp>
+#include <rosin/condition/fourier_resampler.hpp>
+#include <rosin/condition/fourier_shift.hpp>
+#include <rosin/condition/fractional_delay.hpp>
+#include <rosin/condition/fractional_delay_design.hpp>
+#include <rosin/condition/low_pass.hpp>
 #include <rosin/condition/overlap_save.hpp>
+#include <rosin/condition/overlap_save_design.hpp>
+#include <rosin/condition/record_delay.hpp>
 
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/calibrate/damped_lines.hpp>
 #include <rosin/calibrate/partial_baseband.hpp>
 #include <rosin/calibrate/partial_choice.hpp>
 #include <rosin/calibrate/partial_line.hpp>
+#include <rosin/calibrate/partial_search.hpp>
 #include <rosin/calibrate/partials.hpp>
+#include <rosin/calibrate/pickup_fit.hpp>
+#include <rosin/calibrate/pickup_glide.hpp>
+#include <rosin/calibrate/pickup_loss.hpp>
+#include <rosin/calibrate/pickup_pitch.hpp>
+#include <rosin/calibrate/pickup_regression.hpp>
+#include <rosin/calibrate/pickup_string.hpp>
 #include <rosin/calibrate/pluck_fit.hpp>
 #include <rosin/calibrate/pluck_layout.hpp>
 #include <rosin/calibrate/pluck_model.hpp>
@@ -70,7 +84,11 @@
 #include <rosin/reconstruct/periodic_reconstruction.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>
 #include <rosin/reconstruct/sensitivity.hpp>
+#include <rosin/reconstruct/streaming_design.hpp>
+#include <rosin/reconstruct/streaming_reconstructor.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
+
+#include <rosin/torsion/torsion_response.hpp>
 
 #include <rosin/friction/contact_heat.hpp>
 #include <rosin/friction/creep.hpp>
@@ -82,8 +100,6 @@
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/friction/yield_curve.hpp>
 #include <rosin/friction/yield_curve_design.hpp>
-
-#include <rosin/torsion/torsion_response.hpp>
 
 #include <rosin/simulate/converter.hpp>
 #include <rosin/simulate/modal_bank.hpp>
