@@ -48,7 +48,7 @@ enum class airy_form {
 [[nodiscard]] inline fir airy_kernel(double delay_s, double stiffness_s2, const band& limits, double rate_Hz,
                                      airy_form form = airy_form::transmission, int oversampling = 32) {
   const double fine_Hz = rate_Hz * oversampling;
-  const lag_range lags = lags_of(delay_s, stiffness_s2, limits, rate_Hz);
+  const passage_lags lags = lags_of_passage(delay_s, stiffness_s2, limits, rate_Hz);
   const int margin = lags.last - static_cast<int>(delay_s * rate_Hz);
   // The band's own response, at the fine rate, is what the formula is convolved with.
   const fir window = sample_response([](double) { return 1.0; }, limits, fine_Hz, -margin * oversampling, margin * oversampling);

@@ -47,10 +47,10 @@ struct inverse_transmission {
 
 /// Earliest and latest lag (samples) that can hold the response of a passage within `limits`: energy arrives between the
 /// group delay of the highest frequency and that of the lowest, and the band's window rings a little around both.
-struct lag_range {
+struct passage_lags {
   int first, last;
 };
-[[nodiscard]] inline lag_range lags_of(double delay_s, double stiffness_s2, const band& limits, double rate_Hz) {
+[[nodiscard]] inline passage_lags lags_of_passage(double delay_s, double stiffness_s2, const band& limits, double rate_Hz) {
   const double fastest = slowness_ratio(2 * std::numbers::pi * limits.stop_Hz, stiffness_s2);
   const double ringing = 20 * rate_Hz / (limits.stop_Hz - limits.pass_Hz) + 24;
   return {static_cast<int>(std::floor(delay_s * rate_Hz * fastest - ringing)),
@@ -59,14 +59,14 @@ struct lag_range {
 
 /// Exact-phase transmission kernel: the shortest with the error asked for (1e-2 ... 1e-7).
 [[nodiscard]] inline fir transmission_kernel(const transmission& path, const band& limits, double rate_Hz, double error) {
-  const lag_range lags = lags_of(path.delay_s, path.stiffness_s2, limits, rate_Hz);
+  const passage_lags lags = lags_of_passage(path.delay_s, path.stiffness_s2, limits, rate_Hz);
   return shortest_fir(path, limits, rate_Hz, lags.first, lags.last, error);
 }
 
 /// Its inverse; anticausal. Without loss it is the transmission kernel reversed in time.
 [[nodiscard]] inline fir transmission_kernel(const inverse_transmission& path, const band& limits, double rate_Hz,
                                              double error) {
-  const lag_range lags = lags_of(path.delay_s, path.stiffness_s2, limits, rate_Hz);
+  const passage_lags lags = lags_of_passage(path.delay_s, path.stiffness_s2, limits, rate_Hz);
   return shortest_fir(path, limits, rate_Hz, -lags.last, -lags.first, error);
 }
 

@@ -36,7 +36,7 @@ template <class Physics>
 [[nodiscard]] std::vector<fir> bow_point_kernels(const bow_point& at, const band& limits, double rate_Hz, double error = kernel_error) {
   const bow_point_transfer<Physics> transfer(at, limits, rate_Hz);
   const double longest = std::max(at.delay_s[0], at.delay_s[1]);
-  const lag_range lags = lags_of(longest, at.stiffness_s2, limits, rate_Hz);
+  const passage_lags lags = lags_of_passage(longest, at.stiffness_s2, limits, rate_Hz);
   std::vector<fir> kernels;
   for (std::size_t i = 0; i < transfer.outputs * transfer.inputs; ++i)
     kernels.push_back(shortest_fir([&](double f) { return transfer(f)[i]; }, limits, rate_Hz, -lags.last, lags.last, error));

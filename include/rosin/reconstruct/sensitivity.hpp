@@ -40,7 +40,7 @@ namespace detail {
 template <class Physics>
 [[nodiscard]] std::vector<fir> sensitivity_kernels(const calibration& c, const band& limits, double rate_Hz) {
   const waveform_vector step = detail::derivative_steps(c);
-  const lag_range lags = lags_of(std::max(c.at.delay_s[0], c.at.delay_s[1]), c.at.stiffness_s2, limits, rate_Hz);
+  const passage_lags lags = lags_of_passage(std::max(c.at.delay_s[0], c.at.delay_s[1]), c.at.stiffness_s2, limits, rate_Hz);
   std::vector<fir> kernels;
   for (int p = 0; p < waveform_parameters; ++p) {
     const bool is_gain = p == static_cast<int>(waveform_parameter::gain_ratio);
