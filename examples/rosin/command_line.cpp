@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "command_line.hpp"
 
+#include <rosin/adapt/mat_matio.hpp>
 #include <rosin/report/csv.hpp>
 #include <rosin/report/npy.hpp>
-
-#if ROSIN_HAS_MATIO
-#include <rosin/adapt/mat_matio.hpp>
-#endif
 
 #include <iostream>
 #include <sstream>
@@ -45,9 +42,6 @@ void add_table_options(CLI::App& command, table_output& output) {
 }
 
 std::optional<rosin::failure> may_write(const table_output& output) {
-#if !ROSIN_HAS_MATIO
-  if (output.format == "mat") return rosin::failure{"--format mat: this build has no matio (libmatio-dev)"};
-#endif
   auto why = rosin::cannot_write(output.path, output.existing());
   if (why && !output.force && std::filesystem::exists(output.path)) why->message += "; --force overwrites it";
   return why;
@@ -56,9 +50,7 @@ std::optional<rosin::failure> may_write(const table_output& output) {
 std::optional<rosin::failure> save(const table_output& output, const rosin::table& data) {
   if (auto why = may_write(output)) return why;
   if (output.format == "npy") return rosin::save_npy(output.path, data, output.existing());
-#if ROSIN_HAS_MATIO
   if (output.format == "mat") return rosin::save_mat(output.path, data, output.existing());
-#endif
   return rosin::save_csv(output.path, data, output.existing());
 }
 

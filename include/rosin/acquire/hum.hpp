@@ -23,7 +23,7 @@ struct hum_estimate {
 namespace detail {
 
 /// A local maximum of the amplitude within the mains' tolerance, clear of its neighbourhood.
-[[nodiscard]] inline std::optional<spectrum_line> hum_line(const std::vector<double>& windowed, double rate, double nominal) {
+[[nodiscard]] inline std::optional<spectrum_line> mains_line(const std::vector<double>& windowed, double rate, double nominal) {
   const double bin = rate / static_cast<double>(windowed.size());
   const auto at = [&](double f) { return amplitude_at(windowed, f, rate); };
   const double reach = std::max(0.01 * nominal, 0.6 * bin);
@@ -45,7 +45,7 @@ namespace detail {
   for (int k = 1; k <= 5; ++k) {
     const double f = mains * k, nearest = std::max(1.0, std::round(f / string_Hz)) * string_Hz;
     if (std::abs(f - nearest) < std::max(6 * bin, 0.03 * f) || f > rate / 4) continue;
-    const auto line = hum_line(windowed, rate, f);
+    const auto line = mains_line(windowed, rate, f);
     if (!line) continue;
     out.lines.push_back(*line);
     if (k == 1) out.amplitude = line->amplitude;

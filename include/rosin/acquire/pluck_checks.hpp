@@ -104,7 +104,7 @@ inline bool check_steps(take_check& out, const pluck_view& view, pluck_steps& st
   for (const auto& [name, step, level] : {std::tuple{"near", &steps.near, &steps.near_level}, std::tuple{"far", &steps.far, &steps.far_level}}) {
     const auto& x = view.signals->find(name)->values;
     const double rate = view.signals->sample_rate_Hz, force = view.what->force_N.value_or(0);
-    const auto found = rosin::first_step(x, rate, view.fundamental_Hz);
+    const auto found = rosin::find_release_step(x, rate, view.fundamental_Hz);
     if (found && std::abs(found->height) > 0.2 * force && std::abs(found->height) > 0) {
       *step = *found;
       *level = level_before(x, found->frame, rate, view.fundamental_Hz);

@@ -31,7 +31,7 @@ namespace detail {
 }  // namespace detail
 
 /// The first step that is at least half as high as the highest. Empty where the record is shorter than a few periods.
-[[nodiscard]] inline std::optional<step_arrival> first_step(const std::vector<double>& x, double sample_rate_Hz,
+[[nodiscard]] inline std::optional<step_arrival> find_release_step(const std::vector<double>& x, double sample_rate_Hz,
                                                             double fundamental_Hz) {
   const auto half = static_cast<std::size_t>(std::max(2.0, std::round(sample_rate_Hz / (20 * fundamental_Hz))));
   if (x.size() < 8 * half) return std::nullopt;

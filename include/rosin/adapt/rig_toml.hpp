@@ -12,6 +12,7 @@
 #include <rosin/adapt/rig_sections.hpp>
 #include <rosin/adapt/rig_sensors.hpp>
 #include <rosin/adapt/rig_takes.hpp>
+#include <rosin/adapt/toml_guard.hpp>
 #include <rosin/report/csv.hpp>
 
 #include <filesystem>
@@ -24,6 +25,11 @@ namespace detail {
 
 /// The text parsed, or a failure with the line; never an exception, whichever way toml++ was built.
 inline outcome<toml::table> parse_toml(std::string_view text, const std::string& file) {
+  if (const auto fault = find_toml_fault(text)) {
+    problem_log log{file};
+    log.add(fault->line, "", fault->reason);
+    return log.to_failure();
+  }
   const auto explain = [&](const toml::parse_error& error) {
     problem_log log{file};
     log.add(static_cast<int>(error.source().begin.line), "", std::string{error.description()});

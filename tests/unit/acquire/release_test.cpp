@@ -10,8 +10,8 @@ TEST_CASE("the release arrives as a step of the breaking force, at each end in i
     test::pluck p;
     p.position = position;
     const auto x = test::pluck_forces(p);
-    const auto near = rosin::first_step(x[0], p.rate_Hz, p.fundamental_Hz);
-    const auto far = rosin::first_step(x[1], p.rate_Hz, p.fundamental_Hz);
+    const auto near = rosin::find_release_step(x[0], p.rate_Hz, p.fundamental_Hz);
+    const auto far = rosin::find_release_step(x[1], p.rate_Hz, p.fundamental_Hz);
     REQUIRE(near);
     REQUIRE(far);
     CHECK(near->height == doctest::Approx(-1).epsilon(0.12));
@@ -23,9 +23,9 @@ TEST_CASE("the release arrives as a step of the breaking force, at each end in i
 }
 
 TEST_CASE("no step in what is too short or does not move") {
-  CHECK_FALSE(rosin::first_step({}, 48000, 330));
-  CHECK_FALSE(rosin::first_step(std::vector<double>(20, 1.0), 48000, 330));
-  CHECK_FALSE(rosin::first_step(std::vector<double>(4000, 0.0), 48000, 330));
+  CHECK_FALSE(rosin::find_release_step({}, 48000, 330));
+  CHECK_FALSE(rosin::find_release_step(std::vector<double>(20, 1.0), 48000, 330));
+  CHECK_FALSE(rosin::find_release_step(std::vector<double>(4000, 0.0), 48000, 330));
 }
 
 TEST_CASE("the onset is found within half a period") {

@@ -85,6 +85,8 @@ TEST_CASE("what is not TOML is named with its line") {
   CHECK(test::problems_of("schema = \n").starts_with("rig.toml:1: "));
   CHECK(test::problems_of("schema = 1\nschema = 1\n").starts_with("rig.toml:2: "));
   CHECK(test::problems_of("a = \"\xff\"").starts_with("rig.toml:1: "));
+  const std::string zeros{"schema = 1\n[\0\0 'x']]\n", 19};
+  CHECK(test::problems_of(zeros) == "rig.toml:2: holds a control character, so it is no TOML");
   CHECK(test::problems_of("").find("schema: is missing") != std::string::npos);
 }
 
