@@ -1,4 +1,6 @@
-// Where the chirp-z transform overtakes Eigen's butterfly for a prime radix: the bound in math/fft.hpp.
+// Eigen's transforms, and where the chirp-z transform overtakes Eigen's butterfly for a prime radix: the bound in math/fft.hpp.
+#include "fft_cases.hpp"
+
 #include <rosin/math/fft.hpp>
 
 #include <benchmark/benchmark.h>
@@ -34,5 +36,10 @@ void primes(benchmark::internal::Benchmark* bench) {
 
 }  // namespace
 
+using fft_cases::there_and_back;
+
 BENCHMARK(eigen_butterfly)->Name("fft/512_times_prime/eigen_butterfly")->Apply(primes);
 BENCHMARK(chirp_z)->Name("fft/512_times_prime/chirp_z")->Apply(primes);
+
+BENCHMARK_TEMPLATE(there_and_back, double, rosin::eigen_fft<double>)->Name("fft/eigen/double")->Apply(fft_cases::lengths);
+BENCHMARK_TEMPLATE(there_and_back, float, rosin::eigen_fft<float>)->Name("fft/eigen/float")->Apply(fft_cases::lengths);
