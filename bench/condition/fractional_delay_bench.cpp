@@ -60,6 +60,8 @@ BENCHMARK_TEMPLATE(delay_line, float, rosin::kaiser<16>)->Name("fractional_delay
 BENCHMARK_TEMPLATE(delay_line, float, rosin::kaiser<16, 60>)->Name("fractional_delay/float/kaiser<16,60>");
 BENCHMARK_TEMPLATE(delay_line, float, rosin::kaiser<32>)->Name("fractional_delay/float/kaiser<32>");
 BENCHMARK_TEMPLATE(delay_line, float, rosin::kaiser<64>)->Name("fractional_delay/float/kaiser<64>");
+BENCHMARK_TEMPLATE(delay_line, float, rosin::kaiser<48>)->Name("fractional_delay/float/kaiser<48>");
+BENCHMARK_TEMPLATE(delay_line, float, rosin::kaiser<64, 90>)->Name("fractional_delay/float/kaiser<64,90>");
 BENCHMARK_TEMPLATE(delay_line, double, rosin::lagrange<4>)->Name("fractional_delay/double/lagrange<4>");
 BENCHMARK_TEMPLATE(delay_line, double, rosin::lagrange<8>)->Name("fractional_delay/double/lagrange<8>");
 BENCHMARK_TEMPLATE(delay_line, double, rosin::kaiser<16>)->Name("fractional_delay/double/kaiser<16>");

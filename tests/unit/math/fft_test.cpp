@@ -3,9 +3,9 @@
 #include <doctest/doctest.h>
 #include <laws/fft_laws.hpp>
 
-#include <chrono>
 #include <complex>
 #include <cstddef>
+#include <ctime>
 #include <vector>
 
 TEST_CASE_TEMPLATE("Eigen's transform is the definition at any length", T, float, double) {
@@ -32,8 +32,8 @@ TEST_CASE("a large prime does not take quadratic time") {
   rosin::eigen_fft<double> fft(prime);
   const std::vector<double> x(prime, 1.0);
   std::vector<std::complex<double>> bins(prime / 2 + 1);
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   fft.forward(x.data(), bins.data());
-  CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 3);
+  CHECK(std::clock() - begin < 3 * CLOCKS_PER_SEC);
   CHECK(bins[0].real() == doctest::Approx(static_cast<double>(prime)));
 }
