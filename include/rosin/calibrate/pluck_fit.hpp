@@ -151,7 +151,7 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
     if (detail::worst(result) < 0.1) break;
   }
   const double worst = detail::worst(result);
-  if (worst > 0.8)
+  if (worst > 0.6)
     return failure{takes.front().name + ": the plucks do not ring as the declared string should (residual " +
                    std::to_string(static_cast<int>(100 * worst)) + " % of the signal): check pitch, position, channels and rate"};
   return result;

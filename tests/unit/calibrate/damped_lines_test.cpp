@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/calibrate/damped_lines.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <complex>
+
+namespace {
+
+using complex = std::complex<double>;
+constexpr double step_s = 1 / 128e3;
+
+/// Damped, barely damped, lossless, and a constant.
+const std::vector<rosin::damped_line> lines{{{-30, 4000}, {complex(1, 0), complex(0.5, -0.2)}},
+                                            {{-1e-6, 150000}, {complex(0, 1), complex(1, 1)}},
+                                            {{0, 25000}, {complex(0.1, 0), complex(-1, 0)}},
+                                            {{0, 0}, {complex(2, 0), complex(0, 0)}}};
+
+}  // namespace
+
+TEST_CASE("sums of powers by doubling are the sums term by term, for any count") {
+  for (const complex p : {complex(-30, 4000), complex(-1e-9, 0), complex(0, 0), complex(0, 3e5), complex(-2000, 1e5)})
+    for (const std::size_t count : {0U, 1U, 2U, 7U, 1000U, 4097U}) {
+      std::array<complex, 3> direct{};
+      for (std::size_t k = 0; k < count; ++k) {
+        const double t = static_cast<double>(k) * step_s;
+        const complex z = std::exp(p * t);
+        direct[0] += z, direct[1] += t * z, direct[2] += t * t * z;
+      }
+      const auto sums = rosin::power_sums(p, step_s, count);
+      for (std::size_t a = 0; a < 3; ++a)
+        CHECK(std::abs(sums[a] - direct[a]) <= 1e-11 * (static_cast<double>(count) * std::pow(static_cast<double>(count) * step_s, a) + 1e-30));
+    }
+}
+
+TEST_CASE("the Gram matrix is what summing the functions gives") {
+  constexpr std::size_t count = 700;
+  const Eigen::MatrixXd gram = rosin::line_gram(lines, step_s, count);
+  Eigen::MatrixXd functions(count, 16);
+  for (Eigen::Index k = 0; k < Eigen::Index{count}; ++k)
+    for (Eigen::Index n = 0; n < 4; ++n) {
+      const double t = static_cast<double>(k) * step_s;
+      const complex z = std::exp(lines[static_cast<std::size_t>(n)].pole * t);
+      functions.row(k).segment<4>(4 * n) << z.real(), z.imag(), t * z.real(), t * z.imag();
+    }
+  const Eigen::MatrixXd direct = functions.transpose() * functions;
+  for (Eigen::Index i = 0; i < 16; ++i)
+    for (Eigen::Index j = 0; j < 16; ++j)
+      CHECK(std::abs(gram(i, j) - direct(i, j)) <= 1e-10 * std::sqrt(direct(i, i) * direct(j, j)) + 1e-14);
+}
+
+TEST_CASE("running over the samples visits each once, with the lines as they are there") {
+  constexpr std::size_t count = 1000;
+  std::size_t seen = 0;
+  rosin::line_runner(lines, step_s)(count, [&](std::size_t begin, std::size_t length, const Eigen::MatrixXd& re, const Eigen::MatrixXd& im) {
+    CHECK(begin == seen);
+    for (std::size_t i = 0; i < length; i += 37)
+      for (std::size_t n = 0; n < lines.size(); ++n) {
+        const complex z = std::exp(lines[n].pole * (static_cast<double>(begin + i) * step_s));
+        const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(n);
+        CHECK(std::abs(complex(re(row, column), im(row, column)) - z) < 1e-11);
+      }
+    seen += length;
+  });
+  CHECK(seen == count);
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/calibrate/pluck_layout.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+
+namespace {
+
+using layout = rosin::pluck_layout;
+
+std::vector<rosin::pluck_take> three_takes() {
+  std::vector<rosin::pluck_take> takes(3);
+  const double positions[] = {0.3, 0.2, 0.3};
+  for (std::size_t i = 0; i < 3; ++i) {
+    takes[i].name = "p" + std::to_string(i + 1);
+    takes[i].position = positions[i];
+    takes[i].strength_N = 0.5;
+    takes[i].strength_tolerance = 0.04;
+  }
+  return takes;
+}
+
+}  // namespace
+
+TEST_CASE("every parameter has a place and a name of its own; equal positions share one") {
+  const layout l(three_takes(), {});
+  CHECK(l.size() == 8 + 2 + 3 * 4);
+  CHECK(l.position(0) == l.position(2));
+  CHECK(l.position(0) != l.position(1));
+  std::set<std::string> names;
+  for (Eigen::Index p = 0; p < l.size(); ++p) names.insert(l.name(p));
+  CHECK(static_cast<Eigen::Index>(names.size()) == l.size());
+  CHECK(l.name(l.at(1, layout::release)) == "release_s of p2");
+  CHECK(l.name(layout::gain_far) == "ln_gain_far");
+}
+
+TEST_CASE("tolerances are limits: two standard deviations") {
+  const layout l(three_takes(), {});
+  const rosin::pluck_guess guess{.fundamental_Hz = 600, .gain_tolerance = {0.05, 0.02}};
+  CHECK(l.prior(layout::gain_far, three_takes(), guess).sd == doctest::Approx(0.01));
+  CHECK(l.prior(l.at(2, layout::strength), three_takes(), guess).sd == doctest::Approx(0.02));
+  CHECK(l.prior(l.at(2, layout::strength), three_takes(), guess).value == doctest::Approx(std::log(0.5)));
+  CHECK(l.prior(layout::fundamental, three_takes(), guess).sd == 0);
+}
+
+TEST_CASE("options fix parameters; the inverse leaves them out") {
+  const layout l(three_takes(), {.stiffness = false, .internal_loss = false});
+  CHECK_FALSE(l.is_free(layout::inharmonicity));
+  CHECK_FALSE(l.is_free(layout::internal_loss));
+  CHECK_FALSE(l.is_free(layout::air_loss));
+  CHECK(l.is_free(layout::convention));
+  Eigen::MatrixXd h = Eigen::MatrixXd::Identity(l.size(), l.size()) * 4;
+  h(0, 2) = h(2, 0) = 1;
+  const Eigen::MatrixXd inverse = l.invert(h);
+  CHECK(inverse(0, 0) == doctest::Approx(4.0 / 15));
+  CHECK(inverse(layout::inharmonicity, layout::inharmonicity) == 0);
+}
+
+TEST_CASE("what no string could be is not plausible") {
+  const layout l(three_takes(), {});
+  const Eigen::VectorXd start = l.initial(three_takes(), {.fundamental_Hz = 600}, 600, {0.004, 0.004, 0.004}, {0.3, 0.2, 0.3});
+  CHECK(l.plausible(start, start, 50e3));
+  const auto changed = [&](Eigen::Index p, double value) {
+    Eigen::VectorXd v = start;
+    v[p] = value;
+    return l.plausible(v, start, 50e3);
+  };
+  CHECK_FALSE(changed(layout::fundamental, 700));
+  CHECK_FALSE(changed(layout::inverse_quality, -1e-4));
+  CHECK_FALSE(changed(layout::internal_loss, -1e-7));  // a partial at 50 kHz would grow
+  CHECK_FALSE(changed(l.position(1), 0.3));
+  CHECK_FALSE(changed(l.at(0, layout::release), 0.005));
+  CHECK_FALSE(changed(layout::inharmonicity, std::nan("")));
+  CHECK(changed(layout::internal_loss, 1e-7));
+}
