@@ -28,25 +28,26 @@ struct reconstruction_uncertainty {
 
 namespace detail {
 
-/// Standard deviation of a combination of outputs for white noise in both inputs.
-[[nodiscard]] inline double noise_through(const std::vector<fir>& kernels, std::array<double, 4> of_output,
-                                          const std::array<double, 2>& noise) {
-  double variance = 0;
-  for (std::size_t input = 0; input < 2; ++input) {
-    int first = 0, last = 0;
-    for (std::size_t p = 0; p < 4; ++p) {
-      first = std::min(first, kernels[2 * p + input].first);
-      last = std::max(last, kernels[2 * p + input].last());
-    }
-    std::vector<double> sum(static_cast<std::size_t>(last - first + 1), 0.0);
-    for (std::size_t p = 0; p < 4; ++p)
-      for (std::size_t j = 0; j < kernels[2 * p + input].taps.size(); ++j)
-        sum[static_cast<std::size_t>(kernels[2 * p + input].first - first) + j] += of_output[p] * kernels[2 * p + input].taps[j];
-    double power = 0;
-    for (const double tap : sum) power += tap * tap;
-    variance += noise[input] * noise[input] * power;
+/// Taps of a weighted sum of the four outputs' kernels from one input.
+[[nodiscard]] inline Eigen::VectorXd combined_taps(const std::vector<fir>& kernels, const std::array<double, 4>& weight, std::size_t input) {
+  int first = 0, last = 0;
+  for (std::size_t p = 0; p < 4; ++p) {
+    first = std::min(first, kernels[2 * p + input].first);
+    last = std::max(last, kernels[2 * p + input].last());
   }
-  return std::sqrt(variance);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(last - first + 1);
+  for (std::size_t p = 0; p < 4; ++p) {
+    const fir& k = kernels[2 * p + input];
+    const auto count = static_cast<Eigen::Index>(k.taps.size());
+    sum.segment(k.first - first, count) += weight[p] * Eigen::VectorXd::Map(k.taps.data(), count);
+  }
+  return sum;
+}
+
+/// Standard deviation of a weighted sum of the outputs for white noise in both inputs.
+[[nodiscard]] inline double noise_through(const std::vector<fir>& kernels, const std::array<double, 4>& weight,
+                                          const std::array<double, 2>& noise) {
+  return std::hypot(noise[0] * combined_taps(kernels, weight, 0).norm(), noise[1] * combined_taps(kernels, weight, 1).norm());
 }
 
 /// rms over the known samples of the difference of two versions.
