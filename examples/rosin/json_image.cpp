@@ -92,7 +92,9 @@ rosin::outcome<json_image> table_image(const std::string& path, const std::strin
 
 rosin::outcome<json_image> plain_image(const std::string& path, const std::string& text) {
   try {
-    return json_image{format::diagnosis, json::parse(text), [path](const std::string&) { return path; }};
+    json document = json::parse(text);
+    const bool calibration = document.is_object() && document.value("format", json{}) == "calibration";
+    return json_image{calibration ? format::calibration : format::diagnosis, std::move(document), [path](const std::string&) { return path; }};
   } catch (const json::exception& error) {
     return rosin::failure{path + ": " + error.what()};
   }
@@ -101,7 +103,13 @@ rosin::outcome<json_image> plain_image(const std::string& path, const std::strin
 }  // namespace
 
 std::string name_of(format what) {
-  return what == format::rig ? "rig" : what == format::reconstruction ? "reconstruction" : "diagnosis";
+  switch (what) {
+    case format::rig: return "rig";
+    case format::reconstruction: return "reconstruction";
+    case format::calibration: return "calibration";
+    case format::diagnosis: break;
+  }
+  return "diagnosis";
 }
 
 rosin::outcome<json_image> read_json_image(const std::string& path) {
@@ -113,7 +121,7 @@ rosin::outcome<json_image> read_json_image(const std::string& path) {
   if (extension == ".toml") return rig_image(path, text.str());
   if (extension == ".csv") return table_image(path, text.str());
   if (extension == ".json") return plain_image(path, text.str());
-  return rosin::failure{path + ": the name says no format; a rig ends in .toml, a reconstruction in .csv, a diagnosis in .json"};
+  return rosin::failure{path + ": the name says no format; a rig ends in .toml, a reconstruction in .csv, a diagnosis or a calibration in .json"};
 }
 
 }  // namespace tool

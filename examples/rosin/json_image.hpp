@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The three formats as JSON documents, which is what their schemas describe (docs/formats/).
+// The formats as JSON documents, which is what their schemas describe (docs/formats/).
 //
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace tool {
 
-enum class format { rig, reconstruction, diagnosis };
+enum class format { rig, reconstruction, diagnosis, calibration };
 [[nodiscard]] std::string name_of(format what);
 
 /// A file's JSON image, and how to say where in the file a place of the image is ("rig.toml:12").

@@ -38,9 +38,11 @@ tool::exit_code run(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   app.footer("rosin COMMAND --help explains a command.\nExit status: 0 done, 1 something was found, 2 bad input or usage.");
   tool::add_check(app, result);
-#if ROSIN_HAS_VALIJSON
+  tool::add_fit(app, result);
+  tool::add_reconstruct(app, result);
+  tool::add_simulate(app, result);
+  tool::add_compare(app, result);
   tool::add_validate(app, result);
-#endif
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// rosin validate: a rig file, a reconstruction or a diagnosis against the JSON Schema of its format.
+// rosin validate: a rig file, a reconstruction, a diagnosis or a calibration against the JSON Schema of its format.
 //
 #include "commands.hpp"
 #include "json_image.hpp"
@@ -70,7 +70,7 @@ exit_code run(const options& given, provenance from) {
 }
 
 exit_code print_schema(const std::string& name) {
-  for (const auto what : {format::rig, format::reconstruction, format::diagnosis})
+  for (const auto what : {format::rig, format::reconstruction, format::diagnosis, format::calibration})
     if (name == name_of(what)) std::cout << schema_text(what);
   return exit_code::ok;
 }
@@ -80,9 +80,9 @@ exit_code print_schema(const std::string& name) {
 void add_validate(CLI::App& app, exit_code& result) {
   auto given = std::make_shared<options>();
   CLI::App* command = app.add_subcommand("validate", "Check a file against the JSON Schema of its format");
-  auto* file = command->add_option("FILE", given->file, "A rig (.toml), a reconstruction (.csv) or a diagnosis (.json)");
-  auto* schema = command->add_option("--print-schema", given->print_schema, "Print a schema instead: rig, reconstruction or diagnosis")
-                     ->check(CLI::IsMember({"rig", "reconstruction", "diagnosis"}));
+  auto* file = command->add_option("FILE", given->file, "A rig (.toml), a reconstruction (.csv), a diagnosis or a calibration (.json)");
+  auto* schema = command->add_option("--print-schema", given->print_schema, "Print a schema instead: rig, reconstruction, diagnosis or calibration")
+                     ->check(CLI::IsMember({"rig", "reconstruction", "diagnosis", "calibration"}));
   file->excludes(schema);
   add_json_option(*command, given->json);
   command->footer(

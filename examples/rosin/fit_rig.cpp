@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include "fit_rig.hpp"
+#include "progress.hpp"
+
+namespace tool {
+
+namespace {
+
+using layout = rosin::pluck_layout;
+
+std::string figure(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
+
+std::optional<rosin::pluck_take> pluck_of(const rosin::rig& rig, const rosin::take& take, const checked_take& read,
+                                          std::vector<std::string>& warnings) {
+  const auto position = rig.position_of(take);
+  if (!position) {
+    warnings.push_back(take.name + ": left out: its position is unknown; give [contact].position or contact_position");
+    return std::nullopt;
+  }
+  if (!take.force_N) {
+    warnings.push_back(take.name + ": left out: the force of its release (force_N) is unknown");
+    return std::nullopt;
+  }
+  rosin::pluck_take out{take.name, read.signals.sample_rate_Hz, {read.signals.near_N(), read.signals.far_N()},
+                        *take.force_N, rosin::force_tolerance_of(take), *position};
+  return out;
+}
+
+/// Reads every pluck; those with an error are left out and named.
+void gather(const rosin::rig& rig, provenance& from, rig_calibration& out) {
+  std::size_t plucks = 0;
+  for (const auto& take : rig.takes) plucks += take.kind == rosin::take_kind::pluck ? 1 : 0;
+  progress bar{"reading plucks", plucks};
+  for (const auto& take : rig.takes) {
+    if (take.kind != rosin::take_kind::pluck) continue;
+    bar.step();
+    const auto read = read_take(rig, take, from);
+    if (!read) {
+      out.warnings.push_back(take.name + ": left out: " + read.error());
+      out.incomplete = true;
+      continue;
+    }
+    for (const auto& f : read->check.findings)
+      if (f.level != rosin::severity::note) out.warnings.push_back(sentence(rig, f));
+    if (rosin::has_error(read->check.findings)) {
+      out.warnings.push_back(take.name + ": left out for the error above");
+      out.incomplete = true;
+      continue;
+    }
+    auto pluck = pluck_of(rig, take, *read, out.warnings);
+    if (!pluck) out.incomplete = true;
+    else (take.hold_out ? out.held_out : out.takes).push_back(*std::move(pluck));
+  }
+}
+
+/// The fit works at one rate: that of the first pluck.
+void keep_one_rate(rig_calibration& out) {
+  if (out.takes.empty()) return;
+  const double rate = out.takes.front().rate_Hz;
+  std::erase_if(out.takes, [&](const rosin::pluck_take& t) {
+    if (t.rate_Hz == rate) return false;
+    out.warnings.push_back(t.name + ": left out: recorded at " + figure(t.rate_Hz, "%.0f") + " Hz, the first pluck at " +
+                           figure(rate, "%.0f") + " Hz");
+    return out.incomplete = true;
+  });
+}
+
+rosin::pluck_guess guess_of(const rosin::rig& rig, const rig_calibration& c) {
+  rosin::pluck_guess guess{c.values.fundamental_Hz.value, 0, c.values.quality, {}, c.ac_coupled_Hz};
+  if (c.values.bending_stiffness_Nm2 && c.values.tension_N && c.values.length_m)
+    guess.inharmonicity = std::pow(std::numbers::pi / c.values.length_m->value, 2) * c.values.bending_stiffness_Nm2->value / c.values.tension_N->value;
+  guess.gain_tolerance = {rosin::gain_tolerance_of(*rig.channel("near")), rosin::gain_tolerance_of(*rig.channel("far"))};
+  return guess;
+}
+
+void derive_units(const rosin::rig& rig, rig_calibration& c) {
+  const auto& v = c.values;
+  if (!v.length_m) {
+    c.warnings.push_back("no length_m: nothing in N m^2 or N s/m; stiffness is given as inharmonicity, velocities cannot be had");
+    return;
+  }
+  const double f0 = c.fit.value[layout::fundamental], b = c.fit.value[layout::inharmonicity], L = v.length_m->value;
+  const double length = v.length_m->sd / L;
+  if (rig.string.impedance_Ns_m) {
+    c.impedance_Ns_m = doubtful{v.impedance_Ns_m->value, 0, v.impedance_Ns_m->sd};
+  } else if (v.tension_N) {
+    const double z = v.tension_N->value / (2 * L * f0);
+    c.impedance_Ns_m = doubtful{z, z * c.fit.sd[layout::fundamental] / f0, z * std::hypot(v.tension_N->sd / v.tension_N->value, length)};
+  }
+  if (!c.impedance_Ns_m) {
+    c.warnings.push_back("neither tension_N nor impedance_Ns_m: no bending stiffness in N m^2, and velocities cannot be had");
+    return;
+  }
+  const double tension = c.impedance_Ns_m->value * 2 * L * f0, per = tension * L * L / (std::numbers::pi * std::numbers::pi);
+  const double of_tension = rig.string.impedance_Ns_m ? std::hypot(c.impedance_Ns_m->systematic_sd / c.impedance_Ns_m->value, length)
+                                                      : v.tension_N->sd / v.tension_N->value;
+  c.bending_stiffness_Nm2 = doubtful{b * per, c.fit.sd[layout::inharmonicity] * per, b * per * std::hypot(of_tension, 2 * length)};
+}
+
+/// The mean over the plucks, with the scatter between them where that is more than each one's error.
+doubtful offset_of(const rig_calibration& c, int which) {
+  double weights = 0, sum = 0, scatter = 0;
+  for (std::size_t t = 0; t < c.takes.size(); ++t) {
+    const auto p = c.fit.layout.at(t, which);
+    const double w = 1 / std::max(1e-24, c.fit.sd[p] * c.fit.sd[p]);
+    weights += w;
+    sum += w * c.fit.value[p];
+  }
+  const double mean = sum / weights, n = static_cast<double>(c.takes.size());
+  for (std::size_t t = 0; t < c.takes.size(); ++t) scatter += std::pow(c.fit.value[c.fit.layout.at(t, which)] - mean, 2);
+  const double between = n > 1 ? std::sqrt(scatter / (n - 1) / n) : std::abs(mean);
+  return {mean, std::max(std::sqrt(1 / weights), between), 0};
+}
+
+void judge(rig_calibration& c) {
+  if (!c.fit.converged) {
+    c.warnings.push_back("the fit did not settle: its errors are not to be trusted");
+    c.incomplete = true;
+  }
+  for (const auto& name : c.fit.unidentified) c.warnings.push_back("these plucks cannot tell " + name);
+  const double worst = *std::max_element(c.fit.residual_ratio.begin(), c.fit.residual_ratio.end());
+  if (c.fit.misfit > 4)
+    c.warnings.push_back("the plucks hold more than the model explains (" + figure(c.fit.misfit, "%.0f") +
+                         " times the noise's power at the partials; residual " + figure(100 * worst, "%.2g") +
+                         " % of the signal): standard deviations are widened accordingly");
+  if (c.fit.horizon_periods < 1e6)
+    c.warnings.push_back("the model holds for the first " + figure(c.fit.horizon_periods, "%.0f") + " periods only: the rest was not used");
+  const auto& L = c.fit.layout;
+  for (std::size_t t = 0; t < c.takes.size(); ++t) {
+    const double off = c.fit.value[L.at(t, layout::strength)] - std::log(c.takes[t].strength_N), sd = c.takes[t].strength_tolerance / 2;
+    if (std::abs(off) > 3 * sd)
+      c.warnings.push_back(c.takes[t].name + ": its strength is " + figure(100 * (std::exp(off) - 1), "%+.1f") + " % off the declared force, " +
+                           figure(std::abs(off) / sd, "%.1f") + " standard deviations");
+  }
+  for (int channel = 0; channel < 2; ++channel) {
+    const double off = c.fit.value[layout::gain_near + channel], sd = c.fit.sd[layout::gain_near + channel];
+    if (std::abs(off) > 0.15)
+      c.warnings.push_back(std::string("the gain of channel ") + (channel == 0 ? "near" : "far") + " is " + figure(100 * (std::exp(off) - 1), "%+.1f") +
+                           " % off its nominal value (+- " + figure(100 * sd, "%.2g") + " %)");
+  }
+}
+
+void predict(rig_calibration& c, bool draw) {
+  for (const auto* set : {&c.takes, &c.held_out}) {
+    if (set == &c.takes && !draw) continue;
+    for (const auto& take : *set) {
+      std::size_t nearest = 0;
+      for (std::size_t i = 1; i < c.declared.size(); ++i)
+        if (std::abs(c.declared[i] - take.position) < std::abs(c.declared[nearest] - take.position)) nearest = i;
+      const double position = c.at[nearest].position + take.position - c.declared[nearest];
+      auto one = predict_pluck(c.fit, take, position, c.ac_coupled_Hz);
+      if (one) (set == &c.takes ? c.drawn : c.predicted).push_back(*std::move(one));
+      else c.warnings.push_back(take.name + ": cannot be predicted: " + one.error());
+    }
+  }
+}
+
+}  // namespace
+
+rosin::outcome<rig_calibration> calibrate(const rosin::rig& rig, provenance& from, bool draw) {
+  rig_calibration out;
+  out.title = rig.title.value_or(rig.file);
+  out.values = rosin::values_of(rig);
+  out.assumed = out.values.assumed;
+  out.ac_coupled_Hz = {rig.channel("near")->ac_coupled_Hz.value_or(0), rig.channel("far")->ac_coupled_Hz.value_or(0)};
+  gather(rig, from, out);
+  keep_one_rate(out);
+  if (out.takes.empty()) {
+    std::string why = rig.file + ": no pluck to calibrate from; record a pluck made by a breaking wire at the contact, or give a calibration";
+    for (const auto& line : out.warnings) why += "\n" + line;
+    return rosin::failure{why};
+  }
+  auto fit = rosin::fit_plucks(out.takes, guess_of(rig, out));
+  if (!fit) return rosin::failure{fit.error()};
+  out.fit = *std::move(fit);
+  derive_units(rig, out);
+  out.declared = out.fit.layout.positions();
+  const double z = out.impedance_Ns_m ? out.impedance_Ns_m->value : std::numeric_limits<double>::quiet_NaN();
+  const double z_sd = out.impedance_Ns_m ? std::hypot(out.impedance_Ns_m->sd, out.impedance_Ns_m->systematic_sd) / z : 0;
+  for (const auto declared : out.declared) out.at.push_back(rosin::calibration_from(out.fit, declared, z, z_sd, out.ac_coupled_Hz));
+  out.offset_N = {offset_of(out, layout::offset_near), offset_of(out, layout::offset_far)};
+  judge(out);
+  predict(out, draw);
+  return out;
+}
+
+}  // namespace tool

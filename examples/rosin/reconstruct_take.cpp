@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+#include "reconstruct_take.hpp"
+#include "reconstruct_channels.hpp"
+
+namespace tool {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string figure(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
+
+/// Loss is compensated, which multiplies what the fit takes for loss: a fit that went astray must not drown the result.
+void limit_loss(rosin::calibration& c, const rosin::band& limits, std::vector<std::string>& warnings) {
+  const double f = limits.stop_Hz, longest = std::max(c.at.delay_s[0], c.at.delay_s[1]);
+  const double gain = std::exp(std::numbers::pi * f * longest * c.at.loss.inverse_q(f));
+  if (gain > 0.5 && gain < 5) return;
+  warnings.push_back("the fitted loss would change the band's end by a factor of " + figure(gain, "%.2g") + " on its way: no string does that; taken as Q = 1000");
+  c.at.loss = {rosin::detail::default_quality, 0, 0};
+  for (const Eigen::Index p : {3, 4}) {
+    c.covariance.row(p).setZero();
+    c.covariance.col(p).setZero();
+  }
+}
+
+/// The calibration for this contact, moved from the nearest pluck where none was at the same place.
+rosin::calibration calibration_at(const calibration_set& set, double declared, double position_sd, std::vector<std::string>& warnings) {
+  std::size_t nearest = 0;
+  for (std::size_t i = 1; i < set.at.size(); ++i)
+    if (std::abs(set.declared[i] - declared) < std::abs(set.declared[nearest] - declared)) nearest = i;
+  rosin::calibration c = set.at[nearest];
+  if (c.at.stiffness_s2 < 0) {  // an ideal string, but for the fit's error; or no string at all
+    if (c.at.stiffness_s2 * c.at.stiffness_s2 > 9 * c.covariance(2, 2)) warnings.emplace_back("the fitted bending stiffness is negative beyond its error: taken as 0");
+    c.at.stiffness_s2 = 0;
+  }
+  const double shift = declared - set.declared[nearest];
+  if (std::abs(shift) < 1e-9) return c;
+  const double one_way = c.at.delay_s[0] + c.at.delay_s[1], doubt = position_sd * std::sqrt(2.0) * one_way;
+  c.position += shift;
+  c.at.delay_s[0] += shift * one_way;
+  c.at.delay_s[1] -= shift * one_way;
+  c.covariance(0, 0) += doubt * doubt;
+  c.covariance(1, 1) += doubt * doubt;
+  c.covariance(0, 1) -= doubt * doubt;
+  c.covariance(1, 0) -= doubt * doubt;
+  warnings.push_back("no pluck was made at the contact's position " + figure(declared, "%.6g") + ": the delays are those of the plucks at " +
+                     figure(set.declared[nearest], "%.6g") + ", moved by the declared distance");
+  return c;
+}
+
+/// Y(f) of a termination as declared, R = (Z Y - 1) / (Z Y + 1).
+declared_end reflection_of(const std::optional<rosin::termination>& end, double impedance) {
+  using form = rosin::termination::form;
+  if (!end || end->kind == form::rigid || end->kind == form::fit) return {};
+  const auto admittance = [t = *end](double f) -> std::complex<double> {
+    std::complex<double> sum = 0;
+    for (const auto& m : t.modes) {
+      const double w = 2 * std::numbers::pi * f, w0 = 2 * std::numbers::pi * m.frequency_Hz;
+      sum += std::complex<double>(0, w) / (m.mass_kg * std::complex<double>(w0 * w0 - w * w, w * w0 / m.q));
+    }
+    const auto& table = t.admittance;
+    if (table.empty() || f < table.front().frequency_Hz || f > table.back().frequency_Hz) return sum;
+    const auto above = std::lower_bound(table.begin(), table.end(), f, [](const auto& p, double x) { return p.frequency_Hz < x; });
+    if (above == table.begin()) return sum + std::complex<double>(above->re_m_sN, above->im_m_sN);
+    const auto& b = *above;
+    const auto& a = *(above - 1);
+    const double u = (f - a.frequency_Hz) / (b.frequency_Hz - a.frequency_Hz);
+    return sum + std::complex<double>(a.re_m_sN + u * (b.re_m_sN - a.re_m_sN), a.im_m_sN + u * (b.im_m_sN - a.im_m_sN));
+  };
+  return {[admittance, impedance](double f) {
+    const std::complex<double> zy = impedance * admittance(f);
+    return (zy - 1.0) / (zy + 1.0);
+  }};
+}
+
+rosin::outcome<rosin::band> band_of(const take_options& how, double rate_Hz) {
+  rosin::band limits{0.30 * rate_Hz, 0.45 * rate_Hz};
+  if (how.pass_Hz > 0) limits = {how.pass_Hz, how.stop_Hz > 0 ? how.stop_Hz : std::min(1.5 * how.pass_Hz, 0.5 * rate_Hz)};
+  else if (how.stop_Hz > 0) limits = {how.stop_Hz / 1.5, how.stop_Hz};
+  if (limits.pass_Hz < limits.stop_Hz && limits.stop_Hz <= 0.5 * rate_Hz) return limits;
+  return rosin::failure{"--pass " + figure(limits.pass_Hz, "%.0f") + " --stop " + figure(limits.stop_Hz, "%.0f") +
+                        ": pass has to be below stop, and stop not above half the sampling rate of " + figure(rate_Hz, "%.0f") + " Hz"};
+}
+
+process_input input_of(const rosin::rig& rig, const checked_take& read, take_reconstruction& r) {
+  process_input in{r.before, read.signals.near_N(), read.signals.far_N(), r.limits, r.rate_Hz, r.how.fine_tune, {}};
+  for (double& noise : in.calibration.noise_N) noise *= std::sqrt(r.rate_Hz / r.calibration.rate_Hz);
+  in.ends = {reflection_of(rig.near, r.before.at.impedance_Ns_m), reflection_of(rig.far, r.before.at.impedance_Ns_m)};
+  for (std::size_t c = 0; c < 2; ++c) {
+    std::vector<double>& x = c == 0 ? in.near_N : in.far_N;
+    const std::string name = c == 0 ? "near" : "far";
+    const double corner = rig.channel(name)->ac_coupled_Hz.value_or(0);
+    const doubtful& offset = r.calibration.offset_N[c];
+    if (corner > 0) {
+      r.ac_coupled = true;
+      rosin::restore_ac_coupled(std::span(x), corner, r.rate_Hz);
+    } else if (std::abs(offset.value) > 5 * offset.sd && std::abs(offset.value) > 1e-4) {
+      for (double& v : x) v -= offset.value;
+      r.assumed.push_back("offset of channel " + name + " = " + figure(1e3 * offset.value) + " mN, that of the plucks: taken out");
+    }
+  }
+  return in;
+}
+
+void note_ends(const rosin::rig& rig, take_reconstruction& r) {
+  using form = rosin::termination::form;
+  for (const auto& [name, end] : {std::pair{"near", &rig.near}, std::pair{"far", &rig.far}}) {
+    if (!*end || (*end)->kind == form::rigid) continue;
+    if ((*end)->kind == form::fit)
+      r.warnings.push_back(std::string("terminations.") + name + " = \"fit\": taken as rigid here");
+    else if (!r.how.frequency_domain)
+      r.warnings.push_back(std::string("terminations.") + name +
+                           " gives way as declared: the time domain takes it as rigid; --frequency-domain takes it as declared");
+  }
+}
+
+/// One period, at the samples of the stretch that it was fitted to.
+std::vector<double> unrolled(const std::vector<double>& one_period, const rosin::periodic_part& part, std::size_t samples) {
+  const auto N = one_period.size();
+  std::vector<std::complex<double>> bins(N / 2);
+  for (std::size_t k = 0; k < bins.size(); ++k)
+    for (std::size_t n = 0; n < N; ++n)
+      bins[k] += one_period[n] * std::polar((k == 0 ? 1.0 : 2.0) / static_cast<double>(N), -2 * std::numbers::pi * static_cast<double>(k * n % N) / static_cast<double>(N));
+  std::vector<double> out(samples, nan);
+  for (std::size_t i = part.begin; i < std::min(part.end, samples); ++i) {
+    const double turn = 2 * std::numbers::pi * static_cast<double>(i - part.begin) / part.period;
+    double sum = 0;
+    for (std::size_t k = 0; k < bins.size(); ++k) sum += (bins[k] * std::polar(1.0, turn * static_cast<double>(k))).real();
+    out[i] = sum;
+  }
+  return out;
+}
+
+std::vector<double> mean_of(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> out(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) out[i] = 0.5 * (a[i] + b[i]);
+  return out;
+}
+
+void take_time_domain(take_reconstruction& r) {
+  const auto& m = r.result.motion;
+  r.force_near_N = m.force_near_N, r.force_far_N = m.force_far_N;
+  r.velocity_near_m_s = m.velocity_near_m_s, r.velocity_far_m_s = m.velocity_far_m_s;
+  r.known = m.known;
+}
+
+void take_frequency_domain(take_reconstruction& r) {
+  const auto& p = *r.result.periodic;
+  const std::size_t n = r.result.motion.force_near_N.size();
+  r.force_near_N = unrolled(p.force_near_N, p.source, n), r.force_far_N = unrolled(p.force_far_N, p.source, n);
+  r.velocity_near_m_s = unrolled(p.velocity_near_m_s, p.source, n), r.velocity_far_m_s = unrolled(p.velocity_far_m_s, p.source, n);
+  r.known = {p.source.begin, std::min(p.source.end, n)};
+  for (const auto& b : p.regularised)
+    r.warnings.push_back("a termination all but follows the string from " + figure(b.pass_Hz, "%.0f") + " to " + figure(b.stop_Hz, "%.0f") +
+                         " Hz: the division was regularised there");
+}
+
+void compare_domains(take_reconstruction& r) {
+  if (!r.result.periodic) return;
+  const auto& p = *r.result.periodic;
+  const auto& m = r.result.motion;
+  const auto periodic = mean_of(unrolled(p.force_near_N, p.source, m.force_near_N.size()), unrolled(p.force_far_N, p.source, m.force_near_N.size()));
+  r.domains_differ = rosin::consistency_delta(mean_of(m.force_near_N, m.force_far_N), periodic);
+  r.period_s = p.source.period / r.rate_Hz;
+  r.steady_begin = p.source.begin, r.steady_end = p.source.end;
+}
+
+void finish_columns(take_reconstruction& r) {
+  r.force_N = mean_of(r.force_near_N, r.force_far_N);
+  r.velocity_m_s = mean_of(r.velocity_near_m_s, r.velocity_far_m_s);
+  r.force_sd_N = r.result.sd.force_sd_N;
+  r.velocity_sd_m_s = r.result.sd.velocity_sd_m_s;
+  for (std::size_t i = 0; i < r.force_N.size(); ++i)
+    if (!std::isfinite(r.force_N[i])) r.force_sd_N[i] = r.velocity_sd_m_s[i] = nan;
+  r.delta_force = rosin::consistency_delta(r.force_near_N, r.force_far_N);
+  r.delta_velocity = rosin::consistency_delta(r.velocity_near_m_s, r.velocity_far_m_s);
+}
+
+/// Rolling under the force; empty as long as what was before the known samples still rings.
+void add_torsion(const rosin::rig& rig, take_reconstruction& r) {
+  if (!rig.torsion) return;
+  const auto& c = r.result.used.at;
+  const auto waveguide = rosin::torsion_of(c.delay_s, c.impedance_Ns_m, rig.torsion->speed_ratio, rig.torsion->impedance_ratio, rig.torsion->q);
+  const auto& m = r.result.motion;
+  const auto begin = static_cast<std::ptrdiff_t>(m.known.begin), end = static_cast<std::ptrdiff_t>(m.known.end);
+  const auto force = mean_of(m.force_near_N, m.force_far_N), velocity = mean_of(m.velocity_near_m_s, m.velocity_far_m_s);
+  const std::vector<double> rolled = rosin::torsion_velocity(waveguide, std::vector<double>(force.begin() + begin, force.begin() + end), r.rate_Hz);
+  const auto memory = static_cast<std::size_t>(waveguide.memory_s() * r.rate_Hz);
+  double early = 0, all = 0;
+  const std::size_t first = std::min<std::size_t>(m.known.begin + memory, m.known.end);
+  for (std::size_t i = m.known.begin; i < m.known.end; ++i) {
+    all += velocity[i] * velocity[i] / static_cast<double>(m.known.end - m.known.begin);
+    if (i < first) early += velocity[i] * velocity[i] / static_cast<double>(first - m.known.begin);
+  }
+  const bool at_rest = early < 0.05 * 0.05 * all;
+  r.torsion_m_s.assign(force.size(), nan);
+  for (std::size_t i = at_rest ? m.known.begin : first; i < m.known.end; ++i)
+    if (i >= r.known.begin && i < r.known.end) r.torsion_m_s[i] = rolled[i - m.known.begin];
+}
+
+/// Slower than half the rod, until it is up to three quarters of it again; from when the rod first caught the string. What
+/// sticks is the surface: where its rolling is modelled it counts.
+void find_slips(take_reconstruction& r) {
+  if (r.rod_m_s.empty()) return;
+  bool caught = false, slipping = false;
+  for (std::size_t i = r.known.begin; i < r.known.end; ++i) {
+    const double rolling = !r.torsion_m_s.empty() && std::isfinite(r.torsion_m_s[i]) ? r.torsion_m_s[i] : 0;
+    const double ratio = r.rod_m_s[i] > 0 ? (r.velocity_m_s[i] + rolling) / r.rod_m_s[i] : 0;
+    caught = caught || ratio > 0.75;
+    if (!caught) continue;
+    const bool before = std::exchange(slipping, slipping ? ratio < 0.75 : ratio < 0.5);
+    if (slipping && !before) r.slips.emplace_back(i, i + 1);
+    if (slipping) r.slips.back().second = i + 1;
+  }
+}
+
+void judge(const rosin::rig& rig, take_reconstruction& r) {
+  const double one_way = r.before.at.delay_s[0] + r.before.at.delay_s[1];
+  if (const auto& t = r.result.tuning; t && t->sigmas > 5) {
+    const double stretch = (t->shift[0] + t->shift[1]) / one_way, length = rig.string.length_m.value_or(0);
+    const double moved = (t->shift[0] - r.before.position * (t->shift[0] + t->shift[1])) / one_way;
+    r.warnings.push_back("the search had to move delays and gain ratio by " + figure(t->sigmas, "%.1f") + " standard deviations (tension " +
+                         figure(-200 * stretch, "%+.3f") + " %, contact " + (length > 0 ? figure(1e3 * length * moved, "%+.3f") + " mm" : figure(moved, "%+.5f") + " of the length") +
+                         ", gain ratio " + figure(100 * t->shift[5], "%+.3f") + " %): tension or contact moved since the plucks, or the string does more than the model");
+  }
+  if (r.delta_force > 0.03)
+    r.warnings.push_back("the two versions of the force differ by Delta = " + figure(r.delta_force, "%.3f") +
+                         ": string or sensors do what the model does not hold; the standard deviations count that in");
+  if (r.period_s > 0 && std::abs(r.period_s * r.calibration.fundamental_Hz - 1) > 0.06)
+    r.warnings.push_back("the take repeats at " + figure(1 / r.period_s, "%.2f") + " Hz, the plucks at " + figure(r.calibration.fundamental_Hz, "%.2f") +
+                         " Hz: check the sample rate in the file's header, or it is no motion of one slip a period");
+  if (!r.result.periodic) r.warnings.push_back("no periodic stretch: " + r.result.why_not_periodic);
+  if (r.rod_m_s.empty()) r.warnings.push_back("speed_m_s of the take is not given: slips cannot be told from sticking");
+}
+
+std::optional<rosin::failure> cannot_start(const rosin::take& take, const checked_take& read, const take_reconstruction& r) {
+  if (!std::isfinite(r.before.at.impedance_Ns_m))
+    return rosin::failure{take.name + ": length_m and tension_N (or impedance_Ns_m) are needed: without the wave impedance there is no velocity in m/s"};
+  const double needed = 4 * (r.before.at.delay_s[0] + r.before.at.delay_s[1]);
+  if (r.sampled_s > needed) return std::nullopt;
+  return rosin::failure{read.signals.file + ": take " + take.name + ": " + figure(1e3 * r.sampled_s) + " ms are too short: nothing is known within a transit time of either end"};
+}
+
+}  // namespace
+
+double take_reconstruction::slips_per_period() const {
+  if (period_s <= 0) return 0;
+  double count = 0;
+  for (const auto& [begin, end] : slips) count += begin >= steady_begin && begin < steady_end ? 1 : 0;
+  return count * period_s * rate_Hz / static_cast<double>(steady_end - steady_begin);
+}
+
+rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, const rosin::take& take, const checked_take& read,
+                                                     const calibration_set& calibration, const take_options& how) {
+  take_reconstruction r;
+  r.rig = rig.file, r.take = take.name, r.title = rig.title.value_or(rig.file);
+  r.rate_Hz = read.signals.sample_rate_Hz, r.how = how, r.calibration = calibration;
+  r.sampled_s = static_cast<double>(read.signals.frames()) / r.rate_Hz;
+  const auto limits = band_of(how, r.rate_Hz);
+  if (!limits) return rosin::failure{limits.error()};
+  r.limits = *limits;
+  const auto position = rig.position_of(take);
+  if (!position) return rosin::failure{rig.file + ":" + std::to_string(take.line) + ": take \"" + take.name + "\": the position of the contact is unknown"};
+  r.before = calibration_at(calibration, *position, rig.position_tolerance.value_or(rosin::detail::default_position_tolerance) / 2, r.warnings);
+  if (const auto why = cannot_start(take, read, r)) return *why;
+  limit_loss(r.before, r.limits, r.warnings);
+  if (calibration.rate_Hz != r.rate_Hz)
+    r.warnings.push_back("recorded at " + figure(r.rate_Hz, "%.0f") + " Hz, the plucks at " + figure(calibration.rate_Hz, "%.0f") + " Hz");
+  note_ends(rig, r);
+  const process_input in = input_of(rig, read, r);
+  r.result = how.paper ? process_as_paper(in) : process_full(in);
+  const auto& m = r.result.motion;
+  if (m.known.end <= m.known.begin)
+    return rosin::failure{read.signals.file + ": take " + take.name + ": " + std::to_string(read.signals.frames()) + " samples are too few: the kernels reach beyond them everywhere"};
+  if (how.frequency_domain && !r.result.periodic) return rosin::failure{take.name + ": --frequency-domain: " + r.result.why_not_periodic};
+  if (how.frequency_domain) take_frequency_domain(r);
+  else take_time_domain(r);
+  compare_domains(r);
+  finish_columns(r);
+  add_torsion(rig, r);
+  add_rod_and_normal_force(rig, take, read, r);
+  find_slips(r);
+  add_comparisons(rig, take, read, r);
+  if (r.ac_coupled && !r.rod_m_s.empty() && r.normal_force_N)
+    r.dc = rosin::estimate_dc_level(r.force_N, r.velocity_m_s, r.rod_m_s[(r.known.begin + r.known.end) / 2], *r.normal_force_N);
+  judge(rig, r);
+  return r;
+}
+
+}  // namespace tool

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "report_figure.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+extern char** environ;  // NOLINT: POSIX
+
+namespace tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::string> program_on_path(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders{path != nullptr ? path : ""};
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string place = (folder.empty() ? "." : folder) + "/" + name;
+    std::error_code ignored;
+    if (fs::is_regular_file(place, ignored) && ::access(place.c_str(), X_OK) == 0) return place;
+  }
+  return std::nullopt;
+}
+
+/// A folder that is gone with its owner.
+struct scratch_folder {
+  std::string path;
+  scratch_folder() {
+    std::error_code ignored;
+    std::string form = (fs::temp_directory_path(ignored) / "rosin-figures-XXXXXX").string();
+    if (::mkdtemp(form.data()) != nullptr) path = form;
+  }
+  scratch_folder(const scratch_folder&) = delete;
+  scratch_folder& operator=(const scratch_folder&) = delete;
+  ~scratch_folder() {
+    std::error_code ignored;
+    if (!path.empty()) fs::remove_all(path, ignored);
+  }
+};
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c == '\n' ? ' ' : c};
+  return out + "\"";
+}
+
+void write_data(std::ostream& out, const std::string& name, const curve& c) {
+  out << name << " << EOD\n";
+  bool gap = true;
+  for (std::size_t i = 0; i < c.x.size() && i < c.y.size(); ++i) {
+    const bool known = std::isfinite(c.x[i]) && std::isfinite(c.y[i]);
+    if (known) out << c.x[i] << ' ' << c.y[i] << '\n';
+    else if (!gap) out << '\n';
+    gap = !known;
+  }
+  if (c.x.empty()) out << "NaN NaN\n";
+  out << "EOD\n";
+}
+
+void write_panel(std::ostream& out, const panel& p, const std::string& name, double bottom, double top, int width, double height) {
+  for (std::size_t c = 0; c < p.curves.size(); ++c) write_data(out, "$" + name + "_" + std::to_string(c), p.curves[c]);
+  const auto range = [&](const char* axis, const std::optional<std::pair<double, double>>& r) {
+    if (r) out << "set " << axis << "range [" << r->first << ":" << r->second << "]\n";
+    else out << "set " << axis << "range [*:*]\n";
+  };
+  range("x", p.x_range);
+  range("y", p.y_range);
+  out << "unset arrow\n";
+  for (const auto& [from, to] : p.heavy)
+    out << "set arrow from first " << from << ", graph 0.955 to first " << to << ", graph 0.955 nohead lw 5 lc rgb '" << colour::slip << "'\n";
+  out << "set label 1 " << quoted(p.title) << " at screen " << 82.0 / width << ", screen " << top + 14 / height << " left noenhanced\nset key at screen "
+      << 1 - 18.0 / width << ", screen " << top + 22 / height << "\nset xlabel " << quoted(p.x_label) << " noenhanced\nset ylabel " << quoted(p.y_label) << " noenhanced\n"
+      << "set lmargin at screen " << 82.0 / width << "\nset rmargin at screen " << 1 - 18.0 / width << "\nset bmargin at screen " << bottom
+      << "\nset tmargin at screen " << top << "\nplot ";
+  for (std::size_t c = 0; c < p.curves.size(); ++c) {
+    const curve& k = p.curves[c];
+    out << (c > 0 ? ", " : "") << "$" << name << "_" << c << " using 1:2 with lines lw " << k.width << " dt " << k.dash << " lc rgb '" << k.colour << "' "
+        << (k.name.empty() ? std::string{"notitle"} : "title " + quoted(k.name) + " noenhanced");
+  }
+  out << "\n";
+}
+
+void write_figure(std::ostream& out, const figure& f, std::size_t number, const std::string& file) {
+  constexpr double above = 34, numbers = 26, label = 56;  // around each panel: title; numbers; numbers with their label
+  double height = 0;
+  for (const auto& p : f.panels) height += p.height;
+  out << "set terminal svg size " << f.width << "," << height << " dynamic enhanced font 'sans-serif,13' background 'white' name 'figure" << number << "'\n"
+      << "set output '" << file << "'\nset multiplot\n";
+  double from_top = 0;
+  for (std::size_t i = 0; i < f.panels.size(); ++i) {
+    const panel& p = f.panels[i];
+    const double below = p.x_label.empty() ? numbers : label;
+    write_panel(out, p, "d" + std::to_string(number) + "_" + std::to_string(i), 1 - (from_top + p.height - below) / height, 1 - (from_top + above) / height, f.width, height);
+    from_top += p.height;
+  }
+  out << "unset multiplot\nunset output\n";
+}
+
+bool run_gnuplot(const std::string& program, const std::string& script, const std::string& log) {
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, 2, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  ::posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  std::string name = "gnuplot", file = script;
+  const std::array<char*, 3> arguments{name.data(), file.data(), nullptr};
+  pid_t child = 0;
+  const int failed = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  int status = 1;
+  return failed == 0 && ::waitpid(child, &status, 0) == child && status == 0;
+}
+
+std::string file_text(const std::string& path) {
+  std::ifstream in{path, std::ios::binary};
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+std::optional<rosin::failure> cannot_draw() {
+  if (program_on_path("gnuplot")) return std::nullopt;
+  return rosin::failure{"--report: gnuplot draws the figures, and it is not on the PATH (on Debian: apt-get install gnuplot-nox)"};
+}
+
+rosin::outcome<std::vector<std::string>> draw(const std::vector<figure>& figures) {
+  const auto program = program_on_path("gnuplot");
+  const scratch_folder folder;
+  if (!program) return *cannot_draw();
+  if (folder.path.empty()) return rosin::failure{"--report: no temporary folder could be made"};
+  const std::string script = folder.path + "/figures.gp", log = folder.path + "/log";
+  {
+    std::ofstream out{script};
+    out.precision(9);
+    out << "set encoding utf8\nset border 3 lc rgb '#444444'\nset tics nomirror textcolor rgb '#222222'\nset grid lc rgb '#e4e4e4' lw 0.8 lt 1\n"
+           "set key right horizontal samplen 2.4 font ',12' maxrows 1\n"
+           "set datafile missing 'NaN'\n";
+    for (std::size_t i = 0; i < figures.size(); ++i) write_figure(out, figures[i], i + 1, folder.path + "/" + std::to_string(i) + ".svg");
+    if (!out) return rosin::failure{"--report: the temporary folder " + folder.path + " cannot be written"};
+  }
+  if (!run_gnuplot(*program, script, log)) return rosin::failure{"--report: gnuplot failed: " + file_text(log)};
+  std::vector<std::string> svg;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const std::string text = file_text(folder.path + "/" + std::to_string(i) + ".svg");
+    const auto begin = text.find("<svg");
+    if (begin == std::string::npos || text.find("</svg>") == std::string::npos) return rosin::failure{"--report: gnuplot drew nothing: " + file_text(log)};
+    svg.push_back(text.substr(begin));
+  }
+  return svg;
+}
+
+}  // namespace tool

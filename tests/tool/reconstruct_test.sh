@@ -1,0 +1,100 @@
+# rosin reconstruct: the contact force that the recordings were made from, the format of what is written, and what is refused.
+. "$ROSIN_SOURCE/tests/tool/common.sh"
+perl "$ROSIN_SOURCE/tests/tool/closed_form_rig.pl" rig
+
+# differs FILE: Delta of force_N against the truth, after one scale factor, and that factor; mean taken out.
+differs() {
+  perl -e '
+    open my $t, "<", "rig/truth.csv"; my @truth = <$t>;
+    open my $f, "<", $ARGV[0]; my ($column, @x, @y, $row);
+    while (<$f>) {
+      next if /^#/;
+      chomp; my @c = split /,/, $_, -1;
+      if (!defined $row) { $row = 0; ($column) = grep { $c[$_] eq "force_N" } 0 .. $#c; next }
+      if ($c[$column] ne "" && $c[0] < 0.125) { push @x, $c[$column]; push @y, $truth[$row] }
+      $row++;
+    }
+    my ($mx, $my, $xx, $xy, $yy) = (0) x 5;
+    $mx += $_ / @x for @x; $my += $_ / @y for @y;
+    for my $i (0 .. $#x) { my ($a, $b) = ($x[$i] - $mx, $y[$i] - $my); $xx += $a * $a; $xy += $a * $b; $yy += $b * $b }
+    my $s = $xy / $xx;
+    printf "%.5f %.5f %d %d\n", sqrt(($s * $s * $xx - 2 * $s * $xy + $yy) / ($s * $s * $xx + $yy)), $s, scalar @truth, $row' "$1"
+}
+below() {
+  perl -e 'exit !($ARGV[0] < $ARGV[1])' -- "$2" "$3" && return 0
+  echo "FAILED: $1 is $2, not below $3"
+  failures=$((failures + 1))
+}
+
+expect 0 reconstruct rig --take bow-1 --out a.csv
+says "Delta of the two versions" "fine tuning" "common scale"
+is_silent_about "the search had to move"
+read -r delta scale truth_rows rows < <(differs a.csv)
+below "Delta against the truth" "$delta" 0.012   # sensor noise of 0.25 mN on humps of some 40 mN, to 14.4 kHz
+below "scale's error" "$(perl -e "print abs($scale - 1)")" 0.04
+same "$rows" "$truth_rows"
+expect 0 validate a.csv
+grep -q "^# input .*bow-1.wav sha256 $(sha256sum rig/bow-1.wav | cut -d' ' -f1)" a.csv || { echo "FAILED: no checksum"; failures=1; }
+grep -q '^# assumed: impedance_Ns_m' a.csv || { echo "FAILED: no assumed values"; failures=1; }
+same "$(grep -v '^#' a.csv | head -1 | cut -d, -f1-10)" \
+  "time_s,force_N,velocity_m_s,force_near_N,force_far_N,velocity_near_m_s,velocity_far_m_s,force_sd_N,velocity_sd_m_s,torsion_velocity_m_s"
+same "$(grep -v '^#' a.csv | sed -n 2p | cut -d, -f2-7)" ",,,,,"   # what cannot be known is empty
+
+# the same through a calibration file, bit for bit but for its name
+expect 0 fit rig --json fit.json
+expect 0 reconstruct rig --take bow-1 --calibration fit.json --out b.csv
+read -r delta_file _ < <(differs b.csv)
+same "$delta_file" "$delta"
+
+# a lower band holds less noise; the paper's processing is another one; no tuning leaves the plucks' word
+expect 0 reconstruct rig --take bow-1 --out c.csv --pass 5000 --stop 8000 --calibration fit.json --no-fine-tune
+read -r low _ < <(differs c.csv)
+below "Delta below 5 kHz" "$low" "$delta"
+expect 0 reconstruct rig --take bow-1 --out d.csv --paper --calibration fit.json --no-fine-tune
+read -r paper _ < <(differs d.csv)
+below "Delta" "$delta" "$paper"
+expect 0 reconstruct rig --take bow-1 --no-fine-tune --calibration fit.json --json n.json
+grep -q '"fine_tuning": null' n.json || { echo "FAILED: fine tuning although switched off"; failures=1; }
+
+# other forms
+expect 0 reconstruct rig --take bow-1 --out a.npy --format npy --calibration fit.json --no-fine-tune
+same "$(head -c 6 a.npy | tail -c 5)" NUMPY
+expect 0 reconstruct rig --take bow-1 --out - --pass 5000 --calibration fit.json --no-fine-tune
+grep -q '^time_s,force_N' out.txt || { echo "FAILED: no table on standard output"; failures=1; }
+expect 0 reconstruct rig --take bow-1 --json --calibration fit.json --no-fine-tune
+says '"format": "reconstruction-summary"'
+expect 2 reconstruct rig --take bow-1 --out a.csv
+says "a.csv: exists already; --force overwrites it"
+expect 0 reconstruct rig --take bow-1 --out a.csv --force --calibration fit.json --no-fine-tune
+
+# AC coupled: the mean is unknown, and is estimated aloud
+perl "$ROSIN_SOURCE/tests/tool/closed_form_rig.pl" ac ac
+expect 0 reconstruct ac --take bow-1 --out ac.csv
+says "AC coupled sensors; estimated as"
+read -r delta_ac _ < <(differs ac.csv)
+below "Delta, AC coupled" "$delta_ac" 0.03
+
+# what cannot be done is said
+expect 2 reconstruct rig --take bow-2
+says 'no take "bow-2"; bowed takes: bow-1'
+expect 2 reconstruct rig --take pluck-1
+says "of kind pluck"
+expect 2 reconstruct rig --take bow-1 --pass 20000 --stop 30000
+says "half the sampling rate"
+expect 2 reconstruct rig --take bow-1 --calibration rig/rig.toml
+says "is not JSON"
+echo '{"format": "calibration", "kind": "force-plucks", "schema": 1}' >empty.json
+expect 2 reconstruct rig --take bow-1 --calibration empty.json
+cp -r rig short
+perl -e 'my $d = "\0" x 400; open my $f, ">:raw", "short/bow-1.wav"; print $f "RIFF", pack("V", 36 + length $d), "WAVEfmt ", pack("VvvVVvv", 16, 1, 2, 48000, 192000, 4, 16), "data", pack("V", length $d), $d'
+expect 2 reconstruct short --take bow-1
+sed '/^near/d; s/^far/coil/; s/gain_tolerance.*/quantity = "string-velocity", position = 0.2 }/; s/index = 1/index = 0/' rig/rig.toml >short/rig.toml
+expect 2 reconstruct short --take bow-1
+
+if command -v gnuplot >/dev/null; then
+  expect 0 reconstruct rig --take bow-1 --report page.html
+  [ "$(grep -c '<svg' page.html)" -ge 4 ] || { echo "FAILED: figures are missing"; failures=1; }
+else
+  echo "skipped: the report, no gnuplot"
+fi
+finish
