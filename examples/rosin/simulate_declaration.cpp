@@ -36,8 +36,9 @@ void add_lines(const toml::node& node, std::set<line_number>& lines) {
     for (const auto& [key, value] : *table) add_lines(value, lines);
 }
 
-/// A section ends where the next header, or the comment above that, begins.
+/// A section begins with the comment above its header, and ends where the next one begins.
 void add_rest_of_section(const std::vector<std::string>& text, std::set<line_number>& lines) {
+  while (*lines.begin() > 1 && first_character(text[*lines.begin() - 2]) == '#') lines.insert(*lines.begin() - 1);
   line_number next = *lines.rbegin() + 1;  // lines count from 1
   while (next <= text.size() && first_character(text[next - 1]) != '[') ++next;
   while (next <= text.size() && next > *lines.rbegin() + 1 && first_character(text[next - 2]) == '#') --next;

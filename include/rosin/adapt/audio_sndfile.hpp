@@ -177,6 +177,7 @@ namespace detail {
   const std::string part = path + ".part";
   detail::sndfile_handle file{sf_open(part.c_str(), SFM_WRITE, &info)};
   if (!file) return failure{path + ": " + sf_strerror(nullptr)};
+  sf_command(file.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);  // holds the time: the same samples, another file
   const std::string why = detail::write_frames(file.get(), from);
   file.reset();
   std::error_code error;

@@ -9,7 +9,7 @@
 //
 // That is exact heterodyning, filtering and decimation in one, without the design of a filter per line. W is 1 to 0.6 of the
 // half width and falls to 0 with three continuous derivatives (the polynomial of propagate/band.hpp), so that an edge of the
-// recording is forgotten after about two inverse half widths.
+// recording is forgotten (to 1e-5) after about three inverse half widths.
 //
 #pragma once
 
@@ -65,7 +65,7 @@ public:
   }
 
   /// Time after which an edge of the recording is forgotten.
-  [[nodiscard]] double settling_s() const noexcept { return 2 / half_width_Hz_; }
+  [[nodiscard]] double settling_s() const noexcept { return 3 / half_width_Hz_; }
   [[nodiscard]] double rate() const noexcept {
     return rate_Hz_ * static_cast<double>(short_length_) / static_cast<double>(length_);
   }

@@ -156,7 +156,7 @@ inline std::array<double, 2> likeliest_pitch(const peak_finder& peaks, double no
       continue;
     }
     missed = 0;
-    found.partials.push_back({n, peak->frequency_Hz, peaks.bin_Hz() / 2});
+    found.partials.push_back({n, peak->frequency_Hz, std::hypot(peaks.bin_Hz() / 2, 0.002 * nominal_Hz)});
     if (found.partials.size() < 4) continue;
     fit = fit_pitch(found.partials, found.fundamental_Hz, found.inharmonicity);
     found.fundamental_Hz = fit.value[0];

@@ -31,6 +31,7 @@ struct partial {
   double amplitude = 0, amplitude_sd = 0;  ///< at the start of the stretch, in the unit of the signal; of two lines: root of squares
   bool doubled = false;                  ///< two lines
   double split_Hz = 0;                   ///< between the two
+  double spread_Hz = 0, spread_per_s = 0;  ///< of two lines about their mean, weighted by energy; contained in the sd above
   double lasts_s = 0;                    ///< length of the stretch that was fitted
   double signal_to_noise = 0;            ///< energy of the partial against the noise at it (matched filter), a power ratio
   double misfit = 0;                     ///< energy left over beyond the noise around, as a part of the whole
@@ -141,6 +142,8 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
     da2 += w * std::pow(part.decay_per_s - p.decay_per_s, 2);
   }
   p.frequency_Hz = t.fit.model.centre_Hz + detuning / detail::turn;
+  p.spread_Hz = std::sqrt(df2);
+  p.spread_per_s = std::sqrt(da2);
   p.frequency_sd = std::sqrt(mean.dot(covariance * mean) + df2);
   p.decay_sd = std::sqrt(slope.dot(covariance * slope) + da2);
   p.amplitude = std::sqrt(power);

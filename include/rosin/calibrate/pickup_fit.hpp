@@ -88,6 +88,28 @@ inline void drop_unbelievable(std::vector<partial_track>& tracks, double f0) {
   std::erase_if(tracks, [&](const partial_track& t) { return !believable(summary_of(t), f0); });
 }
 
+/// If most partials are double the string itself has two pitches (losses): their relative distance, which no number of partials
+/// averages away.
+inline double common_spread(const std::vector<partial>& partials, double partial::*spread, double partial::*value) {
+  Eigen::VectorXd relative(static_cast<Eigen::Index>(partials.size()));
+  for (std::size_t i = 0; i < partials.size(); ++i)
+    relative[static_cast<Eigen::Index>(i)] = partials[i].*spread / std::max(std::abs(partials[i].*value), 1e-300);
+  return std::min(median_of(relative), 1.0);
+}
+
+/// What that does to f0 and b: which of the two pitches is heard more may be the same for all partials, and may drift along them.
+inline Eigen::Matrix2d two_pitches(const std::vector<partial>& partials, const robust_fit& pitch) {
+  const double spread = common_spread(partials, &partial::spread_Hz, &partial::frequency_Hz);
+  const double first = partials.front().number, last = partials.back().number;
+  Eigen::VectorXd drift(static_cast<Eigen::Index>(partials.size()));
+  for (std::size_t i = 0; i < partials.size(); ++i)
+    drift[static_cast<Eigen::Index>(i)] = spread * partials[i].frequency_Hz * ((partials[i].number - first) / (last - first) - 0.5);
+  const Eigen::Vector2d moved = pitch.gain * drift;
+  Eigen::Matrix2d covariance = moved * moved.transpose();
+  covariance(0, 0) += std::pow(spread * pitch.value[0], 2);
+  return covariance;
+}
+
 inline void fit_laws(pickup_fit& fit, const found_partials& found, const glide_estimate& glide) {
   std::vector<numbered_frequency> lines;
   std::vector<measured_decay> decays;
@@ -101,13 +123,18 @@ inline void fit_laws(pickup_fit& fit, const found_partials& found, const glide_e
   fit.fundamental_Hz = pitch.value[0];
   fit.inharmonicity = pitch.value[1];
   fit.covariance = pitch.covariance + common * common.transpose();
+  fit.covariance += two_pitches(fit.partials, pitch);
   fit.fundamental_sd = std::sqrt(fit.covariance(0, 0));
   fit.inharmonicity_sd = std::sqrt(fit.covariance(1, 1));
   fit.scatter_Hz = pitch.scatter;
   fit.in_proportion = pitch.in_proportion;
   for (std::size_t i = 0; i < fit.partials.size(); ++i) fit.partials[i].weight = pitch.weight[static_cast<Eigen::Index>(i)];
   std::erase_if(decays, [](const measured_decay& d) { return !(d.decay_per_s > -5 * d.sd_per_s); });
-  if (!decays.empty()) fit.loss = fit_loss(decays);
+  if (decays.empty()) return;
+  fit.loss = fit_loss(decays);
+  const double spread = common_spread(fit.partials, &partial::spread_per_s, &partial::decay_per_s);
+  fit.loss.covariance += spread * spread * fit.loss.value * fit.loss.value.transpose();
+  fit.loss.sd = fit.loss.covariance.diagonal().cwiseSqrt();
 }
 
 inline void add_warnings(pickup_fit& fit, double nominal_Hz) {

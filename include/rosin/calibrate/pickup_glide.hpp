@@ -4,7 +4,8 @@
 // A string that swings widely is stretched, so it starts sharp and comes down with its energy: the same fraction for every
 // partial, and gone like exp(-kappa t), kappa twice the decay rate of the loud partials. Left alone it would make the pitch too
 // high, by more for high partials, which are heard early only. So each partial is fitted with the glide free, the glides are
-// combined robustly (beats look like glides, but not the same in all), and what is sure is taken out of all partials.
+// combined robustly (beats look like glides, but not the same in all), and what is sure is taken out of all partials. kappa
+// itself is sought in the clearest partials. A twentieth of the glide stays in the error: it is not quite exponential.
 //
 #pragma once
 
@@ -13,6 +14,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace rosin {
@@ -39,30 +42,84 @@ inline double glide_decay(const std::vector<partial_track>& tracks) {
 
 }  // namespace detail
 
-/// Precondition: at least one track.
-[[nodiscard]] inline glide_estimate estimate_glide(const std::vector<partial_track>& tracks) {
-  const double kappa = detail::glide_decay(tracks);
+namespace detail {
+
+/// A track as one line with the glide free, gone at the rate kappa. Many turns of phase may lie in a glide: two starts are tried.
+inline line_fit gliding(const partial_track& t, double kappa, double expected) {
+  const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
+  damped_part part = strongest(t.fit.model, lasts);
+  line_fit best = fit_line(t.samples, t.rate_Hz, {{part}, t.fit.model.centre_Hz, {0, kappa}}, true);
+  if (expected == 0) return best;
+  const double heard = std::min(lasts, 0.7 / std::max(part.decay_per_s, 1e-3));  // where the energy is
+  part.detuning_rad_s -= turn * t.fit.model.centre_Hz * expected * pitch_glide{expected, kappa}.path_s(heard) / heard;
+  line_fit other = fit_line(t.samples, t.rate_Hz, {{part}, t.fit.model.centre_Hz, {expected, kappa}}, true);
+  return other.residual < best.residual ? other : best;
+}
+
+struct glides {
+  robust_data each;
+  std::vector<double> share_Hz;
+  double value, sd;  ///< of all together
+};
+
+inline glides combined_glide(const std::vector<partial_track>& tracks, double kappa) {
   const auto n = static_cast<Eigen::Index>(tracks.size());
-  robust_data d{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd::Ones(n)};
-  glide_estimate found;
+  glides g{{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd::Ones(n)}, {}, 0, 0};
   for (Eigen::Index i = 0; i < n; ++i) {
     partial_track t = tracks[static_cast<std::size_t>(i)];
-    line_model one{{detail::strongest(t.fit.model, static_cast<double>(t.samples.size()) / t.rate_Hz)}, t.fit.model.centre_Hz, {0, kappa}};
-    t.fit = fit_line(t.samples, t.rate_Hz, one, true);
-    const Eigen::MatrixXd covariance = detail::line_covariance(t.fit, noise_of(t).at_line);
-    d.y[i] = t.fit.model.glide.relative;
-    d.variance[i] = std::max(covariance(4, 4), 1e-20);
-    found.share_Hz.push_back(-covariance(3, 4) / covariance(4, 4) / detail::turn);
+    const Eigen::Index known = std::min<Eigen::Index>(i, 5);  // lower partials lead: their phase turns less
+    t.fit = gliding(t, kappa, known < 2 ? 0.0 : median_of(g.each.y.segment(i - known, known)));
+    const Eigen::MatrixXd covariance = line_covariance(t.fit, noise_of(t).at_line);
+    g.each.y[i] = t.fit.model.glide.relative;
+    g.each.variance[i] = std::max(covariance(4, 4), 1e-20);
+    g.share_Hz.push_back(-covariance(3, 4) / std::max(covariance(4, 4), 1e-300) / turn);
   }
   const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) {
     y.setConstant(theta[0]);
     J.setOnes();
   };
-  const robust_fit fit = robust_regression(d, constant, Eigen::VectorXd::Constant(1, detail::median_of(d.y)));
-  const double value = fit.value[0], sd = std::sqrt(fit.covariance(0, 0));
-  const bool sure = n >= 4 && value > 2.5 * sd && value < 0.02;
-  found.glide = {sure ? value : 0.0, kappa};
-  found.sd = n < 4 ? 0.0 : sure ? sd : std::min(std::hypot(sd, value), 0.01);
+  const robust_fit fit = robust_regression(g.each, constant, Eigen::VectorXd::Constant(1, median_of(g.each.y)));
+  g.value = fit.value[0];
+  g.sd = std::sqrt(fit.covariance(0, 0));
+  return g;
+}
+
+/// The rate at which the glide dies away, between a third and three times a first guess: the one that leaves least over in the
+/// clearest partials.
+inline double likeliest_glide_decay(const std::vector<partial_track>& tracks, double guess, double expected) {
+  std::vector<std::pair<double, const partial_track*>> clearest;
+  for (const partial_track& t : tracks) clearest.emplace_back(-energy_of(t.samples) / noise_of(t).at_line, &t);
+  std::sort(clearest.begin(), clearest.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  clearest.resize(std::min<std::size_t>(clearest.size(), 6));
+  const auto cost = [&](double factor) {
+    double sum = 0;
+    for (const auto& [order, t] : clearest)
+      sum += static_cast<double>(t->samples.size()) * std::log(std::max(gliding(*t, guess * factor, expected).residual, 1e-300));
+    return sum;
+  };
+  double step = std::sqrt(3.0), best = 1, least = cost(1);
+  for (int i = 0; i < 12 && step > 1.02; ++i) {
+    const double here = best;
+    for (const double factor : {here / step, here * step}) {
+      if (factor < 0.3 || factor > 3.1) continue;
+      if (const double c = cost(factor); c < least) least = c, best = factor;
+    }
+    if (best == here) step = std::sqrt(step);
+  }
+  return guess * best;
+}
+
+}  // namespace detail
+
+/// Precondition: at least one track.
+[[nodiscard]] inline glide_estimate estimate_glide(const std::vector<partial_track>& tracks) {
+  double kappa = detail::glide_decay(tracks);
+  detail::glides all = detail::combined_glide(tracks, kappa);
+  const auto sure = [&] { return tracks.size() >= 4 && all.value > 2.5 * all.sd && all.value < 0.02; };
+  if (sure()) all = detail::combined_glide(tracks, kappa = detail::likeliest_glide_decay(tracks, kappa, all.value));
+  glide_estimate found{{sure() ? all.value : 0.0, kappa}, 0, all.share_Hz};
+  if (tracks.size() < 4) return found;
+  found.sd = sure() ? std::hypot(all.sd, 0.05 * all.value) : std::min(std::hypot(all.sd, all.value), 0.01);
   return found;
 }
 

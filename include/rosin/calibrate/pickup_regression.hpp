@@ -5,9 +5,9 @@
 //
 //     y_i = model_i(theta) + e_i,     var e_i = v_i + (scatter * shape_i)^2
 //
-// v_i is known, the scatter is not: partials of a real string are shifted by its supports, one by one. It is taken from the
-// residuals' median (half of the data may lie), the fit is Huber's (1.5 sigma) with a cut at 5 sigma, and the covariance is
-// Huber's sandwich, psi^2 / (mean psi')^2 (J' V^-1 J)^-1, never less than the plain one, widened for few degrees of freedom
+// v_i is known, the scatter is not: partials of a real string are shifted by its supports, one by one. Fit and scatter are Huber's
+// (location with 1.5 sigma, "proposal 2" for the scale), in the end with a cut at 5 sigma; with less than eight numbers to spare
+// nothing can be called an outlier, and it is 3 sigma and no cut. The covariance is Huber's sandwich, psi^2 / (mean psi')^2 (J' V^-1 J)^-1, never less than the plain one, widened for few degrees of freedom
 // (Student) and for residuals that hang together from one partial to the next: (1 + r)/(1 - r), r their correlation.
 //
 #pragma once
@@ -17,6 +17,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numbers>
 #include <vector>
 
 namespace rosin {
@@ -49,36 +51,46 @@ inline Eigen::VectorXd spread_of(const robust_data& d, double scatter) {
   return (d.variance.array() + (scatter * d.shape.array()).square()).sqrt();
 }
 
-/// The scatter at which the median of |r| / sigma is that of a normal distribution with so many parameters taken out.
-inline double scatter_of(const robust_data& d, const Eigen::VectorXd& residual, Eigen::Index parameters) {
-  const double n = static_cast<double>(d.y.size());
-  const double wanted = 0.6745 * std::sqrt(std::max(n - static_cast<double>(parameters), 0.5) / n);
-  const auto excess = [&](double s) { return median_of(residual.cwiseAbs().cwiseQuotient(spread_of(d, s))) - wanted; };
+/// Where a residual stops counting in full (bend) and at all (cut), in standard deviations.
+struct huber_limits {
+  double bend = 1.5, cut = 5;
+
+  [[nodiscard]] double weight(double u) const { return std::abs(u) <= bend ? 1.0 : std::abs(u) > cut ? 0.0 : bend / std::abs(u); }
+  /// E min(z^2, bend^2) of a normal z.
+  [[nodiscard]] double usual_square() const {
+    const double inside = std::erf(bend / std::numbers::sqrt2), density = std::exp(-bend * bend / 2) / std::sqrt(2 * std::numbers::pi);
+    return inside - 2 * bend * density + bend * bend * (1 - inside);
+  }
+};
+
+/// The scatter at which the bounded squares of residual / sigma add up to what a normal distribution would give.
+inline double scatter_of(const robust_data& d, const Eigen::VectorXd& residual, Eigen::Index parameters, const huber_limits& limits) {
+  const double wanted = limits.usual_square() * std::max(static_cast<double>(d.y.size() - parameters), 0.5);
+  const auto excess = [&](double s) {
+    return residual.cwiseQuotient(spread_of(d, s)).cwiseAbs2().cwiseMin(limits.bend * limits.bend).sum() - wanted;
+  };
   if (!(excess(0) > 0)) return 0;
   double low = 0, high = 10 * residual.cwiseAbs().cwiseQuotient(d.shape).maxCoeff();
   for (int i = 0; i < 60; ++i) (excess((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
   return high;
 }
 
-inline double huber_weight(double u) { return std::abs(u) <= 1.5 ? 1.0 : std::abs(u) > 5 ? 0.0 : 1.5 / std::abs(u); }
-
 /// Variance of the M-estimate against that of least squares without outliers.
-inline double sandwich(const Eigen::VectorXd& u, Eigen::Index parameters) {
-  double psi2 = 0, slope = 0, n = 0, product = 0, square = 0, before = 0;
+inline double sandwich(const Eigen::VectorXd& u, Eigen::Index parameters, const huber_limits& limits) {
+  double psi2 = 0, slope = 0, n = 0, product = 0, before = 0;
   for (const double v : u) {
-    if (huber_weight(v) == 0) continue;
-    const double psi = huber_weight(v) * v;
+    if (limits.weight(v) == 0) continue;
+    const double psi = limits.weight(v) * v;
     psi2 += psi * psi;
-    slope += std::abs(v) <= 1.5 ? 1 : 0;
+    slope += std::abs(v) <= limits.bend ? 1 : 0;
     if (n > 0) product += psi * before;
-    square += psi * psi;
     before = psi;
     n += 1;
   }
   const double freedom = n - static_cast<double>(parameters);
   if (freedom < 1) return 9;
   const double plain = std::max(1.0, psi2 / freedom / std::pow(std::max(slope / n, 0.3), 2));
-  const double correlation = std::clamp(product / std::max(square, 1e-300), 0.0, 0.7);
+  const double correlation = std::clamp(product / std::max(psi2, 1e-300), 0.0, 0.7);
   const double together = correlation > 1 / std::sqrt(n) ? (1 + correlation) / (1 - correlation) : 1.0;
   return plain * together * (freedom > 2.5 ? freedom / (freedom - 2) : 5.0);
 }
@@ -93,13 +105,15 @@ template <class Model>
   fit.value = start;
   Eigen::VectorXd prediction(n), sigma(n), u(n);
   Eigen::MatrixXd jacobian(n, p);
-  for (int i = 0; i < 40; ++i) {
+  detail::huber_limits limits{n - p < 8 ? 3.0 : 1.5, std::numeric_limits<double>::infinity()};
+  for (int i = 0; i < 50; ++i) {
+    if (i == 15 && n - p >= 8) limits.cut = 5;
     model(fit.value, prediction, jacobian);
     const Eigen::VectorXd residual = data.y - prediction;
-    fit.scatter = detail::scatter_of(data, residual, p);
+    fit.scatter = detail::scatter_of(data, residual, p, limits);
     sigma = detail::spread_of(data, fit.scatter);
     u = residual.cwiseQuotient(sigma);
-    fit.weight = u.unaryExpr(&detail::huber_weight);
+    fit.weight = u.unaryExpr([&](double v) { return limits.weight(v); });
     const Eigen::VectorXd w = fit.weight.cwiseQuotient(sigma.cwiseAbs2());
     const Eigen::VectorXd size = (jacobian.transpose() * w.asDiagonal() * jacobian).diagonal().cwiseMax(1e-300).cwiseSqrt();
     const Eigen::MatrixXd scaled = jacobian * size.cwiseInverse().asDiagonal();
@@ -108,17 +122,17 @@ template <class Model>
     fit.gain = size.cwiseInverse().asDiagonal() * inverse * scaled.transpose() * w.asDiagonal();
     const Eigen::VectorXd step = fit.gain * residual;
     fit.value += step;
-    if (step.cwiseProduct(size).norm() < 1e-6) break;
+    if (step.cwiseProduct(size).norm() < 1e-6) i = i < 14 ? 14 : 50;
   }
   const Eigen::MatrixXd scaled = sigma.cwiseInverse().asDiagonal() * jacobian;
   const Eigen::VectorXd size = scaled.colwise().norm().transpose().cwiseMax(1e-300);
   const Eigen::MatrixXd unit = scaled * size.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
-  fit.covariance = detail::sandwich(u, p) * (size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal());
+  fit.covariance = detail::sandwich(u, p, limits) * (size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal());
   fit.used = static_cast<int>((fit.weight.array() > 0).count());
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double a = std::min(std::abs(u[i]), 5.0);
-    fit.cost += std::log(sigma[i]) + (a <= 1.5 ? a * a / 2 : 1.5 * a - 1.125);
+    const double a = std::min(std::abs(u[i]), limits.cut);
+    fit.cost += std::log(sigma[i]) + (a <= limits.bend ? a * a / 2 : limits.bend * (a - limits.bend / 2));
   }
   return fit;
 }

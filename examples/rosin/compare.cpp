@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+//
+// rosin compare: how far a reconstruction is from the truth of a simulation, or from another reconstruction, both through
+// one and the same low-pass.
+//
+#include "commands.hpp"
+#include "provenance.hpp"
+
+#include <rosin/acquire/signal_checks.hpp>
+#include <rosin/condition/low_pass.hpp>
+#include <rosin/propagate/band.hpp>
+#include <rosin/reconstruct/consistency.hpp>
+#include <rosin/report/csv.hpp>
+
+#include <iostream>
+#include <memory>
+#include <numeric>
+#include <span>
+
+namespace tool {
+
+namespace {
+
+struct options {
+  std::string result, truth;
+  std::optional<double> pass_Hz, stop_Hz, at_most;
+  bool json = false;
+};
+
+/// One column of both files, without its mean, which AC-coupled sensors do not know.
+struct compared {
+  std::string name;
+  double scale = 1;        ///< result = scale * truth, by least squares
+  double delta = 0;        ///< Eq. (12) as they are
+  double delta_scaled = 0; ///< Eq. (12) after division by the scale
+  double rms_truth = 0, rms_error = 0, worst = 0;  ///< of the truth, and of the difference after division by the scale
+};
+
+struct stretch {
+  std::size_t begin = 0, end = 0;
+};
+
+/// From the first to the last row in which both columns hold a value.
+stretch known_in_both(std::span<const double> a, std::span<const double> b) {
+  stretch out{0, a.size()};
+  const auto known = [&](std::size_t i) { return std::isfinite(a[i]) && std::isfinite(b[i]); };
+  while (out.begin < out.end && !known(out.begin)) ++out.begin;
+  while (out.end > out.begin && !known(out.end - 1)) --out.end;
+  for (std::size_t i = out.begin; i < out.end; ++i)
+    if (!known(i)) return {};
+  return out;
+}
+
+compared compare_columns(const std::string& name, const std::vector<double>& result, const std::vector<double>& truth, double rate_Hz,
+                         const rosin::band& window) {
+  const auto known = known_in_both(result, truth);
+  const auto margin = static_cast<std::size_t>(std::ceil(4 * rate_Hz / (window.stop_Hz - window.pass_Hz)));
+  if (known.end - known.begin < 4 * margin) return {.name = name};
+  const auto within = [&](const std::vector<double>& x) {
+    const auto filtered = rosin::low_pass<double>(std::span{x}.subspan(known.begin, known.end - known.begin), rate_Hz, window);
+    std::vector<double> kept(filtered.begin() + static_cast<std::ptrdiff_t>(margin), filtered.end() - static_cast<std::ptrdiff_t>(margin));
+    const double mean = std::accumulate(kept.begin(), kept.end(), 0.0) / static_cast<double>(kept.size());
+    for (double& value : kept) value -= mean;
+    return kept;
+  };
+  auto r = within(result);
+  const auto t = within(truth);
+  compared out{.name = name, .delta = rosin::consistency_delta(r, t)};
+  double rt = 0, tt = 0, ee = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) rt += r[i] * t[i], tt += t[i] * t[i];
+  if (rt > 0 && tt > 0) out.scale = rt / tt;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    r[i] /= out.scale;
+    ee += (r[i] - t[i]) * (r[i] - t[i]);
+    out.worst = std::max(out.worst, std::abs(r[i] - t[i]));
+  }
+  out.delta_scaled = rosin::consistency_delta(r, t);
+  out.rms_truth = std::sqrt(tt / static_cast<double>(t.size()));
+  out.rms_error = std::sqrt(ee / static_cast<double>(t.size()));
+  return out;
+}
+
+/// The sampling rate, if both tables go through the same instants.
+rosin::outcome<double> common_rate(const options& given, const rosin::table& result, const rosin::table& truth) {
+  const auto* a = result.find("time_s");
+  const auto* b = truth.find("time_s");
+  if (a == nullptr) return rosin::failure{given.result + ": has no column time_s"};
+  if (b == nullptr) return rosin::failure{given.truth + ": has no column time_s"};
+  if (a->values.size() != b->values.size())
+    return rosin::failure{given.result + " has " + std::to_string(a->values.size()) + " rows, " + given.truth + " has " + std::to_string(b->values.size()) +
+                          ": not the same take"};
+  if (a->values.size() < 2) return rosin::failure{given.result + ": too few rows to compare"};
+  const double step = (a->values.back() - a->values.front()) / static_cast<double>(a->values.size() - 1);
+  for (std::size_t i = 0; i < a->values.size(); ++i)
+    if (!(std::abs(a->values[i] - b->values[i]) < 0.01 * step))
+      return rosin::failure{given.result + " and " + given.truth + ": row " + std::to_string(i + 1) + " belongs to different instants"};
+  return 1 / step;
+}
+
+rosin::outcome<std::vector<compared>> compare(const options& given, const rosin::table& result, const rosin::table& truth, double rate_Hz,
+                                              const rosin::band& window) {
+  std::vector<compared> out;
+  for (const char* name : {"force_N", "velocity_m_s", "torsion_velocity_m_s"}) {
+    const auto* r = result.find(name);
+    const auto* t = truth.find(name);
+    if (r == nullptr || t == nullptr) continue;
+    auto one = compare_columns(name, r->values, t->values, rate_Hz, window);
+    if (one.rms_truth > 0) out.push_back(std::move(one));
+  }
+  if (out.empty())
+    return rosin::failure{given.result + " and " + given.truth + ": no column that both have and that holds a long enough stretch of values"};
+  return out;
+}
+
+void print_text(const std::vector<compared>& columns, const rosin::band& window) {
+  using rosin::detail::figure;
+  std::cout << "both through one low-pass, " << figure(window.pass_Hz, "%.0f") << " to " << figure(window.stop_Hz, "%.0f") << " Hz\n";
+  for (const auto& c : columns)
+    std::cout << c.name << ": Delta " << figure(c.delta, "%.5f") << "; scale " << figure(c.scale, "%.5f") << ", and after division by it Delta "
+              << figure(c.delta_scaled, "%.5f") << ", error " << figure(c.rms_error, "%.3g") << " rms and " << figure(c.worst, "%.3g") << " at worst, of "
+              << figure(c.rms_truth, "%.3g") << " rms\n";
+}
+
+void print_json(const std::vector<compared>& columns, const rosin::band& window, const provenance& from) {
+  json out{{"schema", 1}, {"provenance", from.to_json()}, {"low_pass", {{"pass_Hz", window.pass_Hz}, {"stop_Hz", window.stop_Hz}}}};
+  for (const auto& c : columns)
+    out["columns"][c.name] = {{"delta", c.delta}, {"scale", c.scale}, {"delta_after_scale", c.delta_scaled}, {"rms_error_after_scale", c.rms_error},
+                              {"worst_error_after_scale", c.worst}, {"rms_truth", c.rms_truth}};
+  print(out);
+}
+
+exit_code run(const options& given, provenance from) {
+  const auto result = rosin::read_csv(given.result);
+  if (!result) return fail(result.error(), given.json);
+  const auto truth = rosin::read_csv(given.truth);
+  if (!truth) return fail(truth.error(), given.json);
+  for (const auto* file : {&given.result, &given.truth})
+    if (const auto why = from.add_input(*file)) return fail(why->message, given.json);
+  const auto rate = common_rate(given, *result, *truth);
+  if (!rate) return fail(rate.error(), given.json);
+  const double pass = given.pass_Hz.value_or(std::min(20000.0, 0.3 * *rate));
+  const rosin::band window{pass, given.stop_Hz.value_or(std::min(1.5 * pass, (pass + *rate / 2) / 2))};
+  if (!(window.stop_Hz > window.pass_Hz)) return fail("--stop must be above --pass", given.json);
+  const auto columns = compare(given, *result, *truth, *rate, window);
+  if (!columns) return fail(columns.error(), given.json);
+  if (given.json) print_json(*columns, window, from);
+  else print_text(*columns, window);
+  const auto too_far = [&](const compared& c) { return c.name != "torsion_velocity_m_s" && c.delta_scaled > *given.at_most; };
+  return given.at_most && std::any_of(columns->begin(), columns->end(), too_far) ? exit_code::finding : exit_code::ok;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, exit_code& result) {
+  auto given = std::make_shared<options>();
+  CLI::App* command = app.add_subcommand("compare", "How far a reconstruction is from the truth of a simulation");
+  command->add_option("RESULT", given->result, "Table of `rosin reconstruct`, as CSV")->required()->type_name("FILE.csv");
+  command->add_option("TRUTH", given->truth, "Table of `rosin simulate`, or another reconstruction of the same take")->required()->type_name("FILE.csv");
+  command->add_option("--pass", given->pass_Hz, "Both are low-passed: end of the pass band, 20000 if left out")->check(CLI::PositiveNumber)->type_name("HZ");
+  command->add_option("--stop", given->stop_Hz, "Nothing is left from here on, 1.5 times the pass band if left out")->check(CLI::PositiveNumber)->type_name("HZ");
+  command->add_option("--at-most", given->at_most, "Exit with 1 if force or velocity differs by more, after the common scale")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("DELTA");
+  add_json_option(*command, given->json);
+  command->footer(
+      "Delta is Eq. (12) of Woodhouse, Schumacher & Garoff (2000): sqrt(sum (a - b)^2 / (sum a^2 + sum b^2)), means taken out.\n"
+      "A common scale (the wires' strength, which no recording tells) is stated apart. Empty fields are left out, and so is\n"
+      "the response time of the low-pass at either end.");
+  command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
+}
+
+}  // namespace tool
