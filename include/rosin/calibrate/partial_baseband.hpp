@@ -7,14 +7,17 @@
 //     z(t) = 2 sum_{|k - k0| <= m} W((k - k0) df) X[k] exp(2 pi i (k - k0) df t) / N,      x = A cos(2 pi f t + p)  ->
 //     z(t) = A exp(i p) exp(2 pi i (f - k0 df) t)
 //
-// That is exact heterodyning, filtering and decimation in one, without the design of a filter per line. W is 1 to 0.6 of the
-// half width and falls to 0 with three continuous derivatives (the polynomial of propagate/band.hpp), so that an edge of the
-// recording is forgotten (to 1e-5) after about three inverse half widths.
+// That is exact heterodyning, filtering and decimation in one, without the design of a filter per line. W is a bell,
+//
+//     W(f) = exp(beta (sqrt(1 - (f / half width)^2) - 1)),    beta = 12,
+//
+// whose impulse response is over (to e^-beta) after two inverse half widths: that is how soon an attack is forgotten. A flat top
+// would ring for much longer, and what rings is taken for decay. A line that is not at the centre, or decays, is W(detuning + i
+// decay / 2 pi) times itself, exactly; fits divide by that.
 //
 #pragma once
 
 #include <rosin/math/fft.hpp>
-#include <rosin/propagate/band.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,12 +28,25 @@
 
 namespace rosin {
 
+/// The window of a baseband; analytic, so that it has a value for damped lines too.
+struct bell_window {
+  double half_width_Hz = 0;
+
+  template <class Frequency>
+  [[nodiscard]] Frequency operator()(Frequency f_Hz) const {
+    using std::exp, std::sqrt;
+    constexpr double beta = 12;
+    const Frequency x = f_Hz / half_width_Hz;
+    return exp(beta * (sqrt(1.0 - x * x) - 1.0));
+  }
+};
+
 /// A line and its surroundings at zero frequency: samples from the start of the recording on.
 struct baseband_record {
   std::vector<std::complex<double>> samples;
   double rate_Hz = 0;
   double centre_Hz = 0;   ///< the frequency that became zero
-  double flat_to_Hz = 0;  ///< gain 1 for |f - centre| up to here
+  bell_window window;     ///< gain against f - centre
 };
 
 /// All basebands of one recording have one half width and one rate. Precondition: a signal that is not empty.
@@ -53,7 +69,7 @@ public:
     const auto centre = static_cast<std::ptrdiff_t>(std::lround(frequency_Hz / df_Hz_));
     const auto reach = static_cast<std::ptrdiff_t>(half_width_Hz_ / df_Hz_);
     const auto size = static_cast<std::ptrdiff_t>(short_length_);
-    const band window{flat_part * half_width_Hz_, half_width_Hz_};
+    const bell_window window{half_width_Hz_};
     std::vector<std::complex<double>> bins(short_length_), samples(short_length_);
     for (std::ptrdiff_t k = -reach; k <= reach; ++k)
       if (centre + k > 0 && centre + k < static_cast<std::ptrdiff_t>(spectrum_.size()))
@@ -61,18 +77,16 @@ public:
                                                             spectrum_[static_cast<std::size_t>(centre + k)];
     eigen_fft<std::complex<double>>{short_length_}.inverse(bins.data(), samples.data());
     samples.resize(kept_);
-    return {std::move(samples), rate(), static_cast<double>(centre) * df_Hz_, flat_part * half_width_Hz_};
+    return {std::move(samples), rate(), static_cast<double>(centre) * df_Hz_, window};
   }
 
   /// Time after which an edge of the recording is forgotten.
-  [[nodiscard]] double settling_s() const noexcept { return 3 / half_width_Hz_; }
+  [[nodiscard]] double settling_s() const noexcept { return 2 / half_width_Hz_; }
   [[nodiscard]] double rate() const noexcept {
     return rate_Hz_ * static_cast<double>(short_length_) / static_cast<double>(length_);
   }
 
 private:
-  static constexpr double flat_part = 0.6;
-
   [[nodiscard]] double scale() const noexcept { return 2 * static_cast<double>(short_length_) / static_cast<double>(length_); }
 
   double rate_Hz_, half_width_Hz_ = 0, df_Hz_ = 0;

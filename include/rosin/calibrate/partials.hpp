@@ -44,7 +44,8 @@ struct partial {
 struct partial_track {
   int number = 0;
   std::vector<std::complex<double>> samples;  ///< the stretch that is fitted
-  double rate_Hz = 0, flat_to_Hz = 0;
+  double rate_Hz = 0;
+  bell_window window;  ///< of the baseband: the noise has its shape
   line_fit fit;
 };
 
@@ -64,27 +65,37 @@ inline std::size_t audible_samples(complex_span z, double rate_Hz) {
   return std::max(last * width, std::min<std::size_t>(z.size(), 8));
 }
 
+/// White noise through the window against white noise over the whole rate.
+inline double filled_with_noise(const bell_window& window, double rate_Hz) {
+  double sum = 0;
+  for (int i = 0; i < 64; ++i) sum += std::pow(window((i + 0.5) / 64 * window.half_width_Hz), 2) / 64;
+  return 2 * window.half_width_Hz * sum / rate_Hz;
+}
+
 struct line_noise {
   double at_line;  ///< density of a white complex noise that would be as strong at the line
   double away;     ///< the same some way off: the noise of the recording
 };
 
 /// What a filter matched to the decay finds beside the line in what the fit left over.
-inline line_noise noise_beside(complex_span left, double rate_Hz, const damped_part& p, double flat_Hz) {
+inline line_noise noise_beside(complex_span left, double rate_Hz, const damped_part& p, const bell_window& window) {
   const double lasts = static_cast<double>(left.size()) / rate_Hz, decay = std::max(p.decay_per_s, 0.0);
   const double step = std::max(1 / lasts, 2 * decay / turn);
   double energy = 0, near = 0, all = 0;
   std::vector<double> powers;
   for (std::size_t j = 0; j < left.size(); ++j) energy += std::exp(-2 * decay * static_cast<double>(j) / rate_Hz);
   for (int k = -12; k <= 12; ++k) {
-    if (k == 0 || (std::abs(k) > 3 && std::abs(p.detuning_rad_s / turn + k * step) > flat_Hz)) continue;
+    const double offset = p.detuning_rad_s / turn + k * step;
+    if (k == 0 || std::abs(offset) > 0.55 * window.half_width_Hz) continue;
+    const double gain = window(offset);
     const std::complex<double> turn_by = std::polar(std::exp(-decay / rate_Hz), -(p.detuning_rad_s + turn * k * step) / rate_Hz);
     std::complex<double> sum = 0, w = 1;
     for (const auto& r : left) sum += w * r, w *= turn_by;
-    powers.push_back(std::norm(sum) / energy);
+    powers.push_back(std::norm(sum) / (energy * gain * gain));
     all += powers.back();
     if (std::abs(k) <= 3) near += powers.back() / 6;
   }
+  if (powers.empty()) return {energy_of(left) / static_cast<double>(left.size()), 0};  // a line wider than the band
   all /= static_cast<double>(powers.size());
   std::nth_element(powers.begin(), powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 2), powers.end());
   return {near > 2 * all ? near : all, powers[powers.size() / 2] / 0.693};
@@ -108,7 +119,7 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
   const auto left = detail::left_over(t.samples, t.rate_Hz, t.fit.model);
   const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
   const double rounding = 1e-24 * detail::energy_of(t.samples) / static_cast<double>(t.samples.size());
-  const auto noise = detail::noise_beside(left, t.rate_Hz, detail::strongest(t.fit.model, lasts), t.flat_to_Hz);
+  const auto noise = detail::noise_beside(left, t.rate_Hz, detail::strongest(t.fit.model, lasts), t.window);
   return {std::max(noise.at_line, rounding), noise.away};
 }
 
@@ -128,9 +139,10 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
     const double w = part.energy(lasts) / energy;
     detuning += w * part.detuning_rad_s;
     p.decay_per_s += w * part.decay_per_s;
-    power += std::norm(part.amplitude);
-    loudness[at] = part.amplitude.real();
-    loudness[at + 1] = part.amplitude.imag();
+    const auto gain = t.window(std::complex<double>{part.detuning_rad_s, part.decay_per_s} / detail::turn);
+    power += std::norm(part.amplitude / gain);
+    loudness[at] = part.amplitude.real() / std::norm(gain);
+    loudness[at + 1] = part.amplitude.imag() / std::norm(gain);
     slope[at + 2] = w;
     mean[at + 3] = w / detail::turn;
     at += 4;
@@ -151,7 +163,7 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
   p.doubled = t.fit.model.parts.size() > 1;
   if (p.doubled) p.split_Hz = std::abs(t.fit.model.parts[0].detuning_rad_s - t.fit.model.parts[1].detuning_rad_s) / detail::turn;
   p.signal_to_noise = energy * t.rate_Hz / noise.at_line;
-  const double expected = noise.away * static_cast<double>(t.samples.size()) * 2 * t.flat_to_Hz / t.rate_Hz;
+  const double expected = noise.away * static_cast<double>(t.samples.size()) * detail::filled_with_noise(t.window, t.rate_Hz);
   p.misfit = std::max(t.fit.residual - 1.5 * expected, 0.0) / std::max(detail::energy_of(t.samples), 1e-300);
   return p;
 }
@@ -170,9 +182,8 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
   const auto enough = decay > 0 ? std::max<std::size_t>(12, static_cast<std::size_t>(std::min(5 / decay * whole.rate_Hz, 1e9))) : length;
   if (enough < length) one = fit_line(z.first(length = enough), whole.rate_Hz, one.model);
   if (!(std::abs(one.model.parts[0].detuning_rad_s) < detail::turn * 1.5 * tolerance_Hz)) return std::nullopt;
-  const double filled = 2 * whole.flat_to_Hz / whole.rate_Hz;
-  partial_track track{number, {z.begin(), z.begin() + static_cast<std::ptrdiff_t>(length)}, whole.rate_Hz, whole.flat_to_Hz, one};
-  track.fit = one_or_two_lines(track.samples, whole.rate_Hz, one, 1.5 * tolerance_Hz, filled);
+  partial_track track{number, {z.begin(), z.begin() + static_cast<std::ptrdiff_t>(length)}, whole.rate_Hz, whole.window, one};
+  track.fit = one_or_two_lines(track.samples, whole.rate_Hz, one, 1.5 * tolerance_Hz, detail::filled_with_noise(whole.window, whole.rate_Hz));
   return track;
 }
 

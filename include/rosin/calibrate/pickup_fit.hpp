@@ -171,7 +171,7 @@ inline void add_warnings(pickup_fit& fit, double nominal_Hz) {
   const double duration = static_cast<double>(signal.size()) / rate_Hz, end = std::min(options.end_s, duration);
   const double least = std::max(0.15, 12 / nominal_Hz);
   const double begin = options.release_s ? *options.release_s : detail::sound_begins_s(signal.first(samples(end)), rate_Hz);
-  const baseband_bank bank{signal, rate_Hz, std::min(40.0, 0.45 * nominal_Hz)};
+  const baseband_bank bank{signal, rate_Hz, std::min(64.0, 0.45 * nominal_Hz)};
   const double start = begin + std::max(options.skip_s, bank.settling_s()), stop = end - bank.settling_s() / 2;
   if (!(begin >= 0) || stop - start < least) return refuse("signal: less than " + std::to_string(least) + " s of ringing to look at");
 

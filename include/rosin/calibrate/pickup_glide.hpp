@@ -29,13 +29,24 @@ struct glide_estimate {
 
 namespace detail {
 
+/// The track as one line, whatever it was fitted as (a glide looks like two): decay from the energies of its halves.
+inline damped_part as_one(const partial_track& t) {
+  const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
+  const complex_span z{t.samples};
+  const double first = energy_of(z.first(z.size() / 2)), second = energy_of(z.subspan(z.size() / 2));
+  double energy = 0, detuning = 0;
+  for (const damped_part& p : t.fit.model.parts) {
+    energy += p.energy(lasts);
+    detuning += p.energy(lasts) * p.detuning_rad_s;
+  }
+  return {1.0, std::max(std::log(first / std::max(second, 1e-300)), 0.05) / lasts, detuning / energy};
+}
+
 inline double glide_decay(const std::vector<partial_track>& tracks) {
   double energy = 0, sum = 0;
   for (const partial_track& t : tracks) {
-    const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
-    const damped_part& p = strongest(t.fit.model, lasts);
-    energy += p.energy(lasts);
-    sum += p.energy(lasts) * std::max(p.decay_per_s, 0.2 / lasts);
+    energy += energy_of(t.samples);
+    sum += energy_of(t.samples) * as_one(t).decay_per_s;
   }
   return 2 * sum / std::max(energy, 1e-300);
 }
@@ -47,7 +58,7 @@ namespace detail {
 /// A track as one line with the glide free, gone at the rate kappa. Many turns of phase may lie in a glide: two starts are tried.
 inline line_fit gliding(const partial_track& t, double kappa, double expected) {
   const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
-  damped_part part = strongest(t.fit.model, lasts);
+  damped_part part = as_one(t);
   line_fit best = fit_line(t.samples, t.rate_Hz, {{part}, t.fit.model.centre_Hz, {0, kappa}}, true);
   if (expected == 0) return best;
   const double heard = std::min(lasts, 0.7 / std::max(part.decay_per_s, 1e-3));  // where the energy is
@@ -84,7 +95,7 @@ inline glides combined_glide(const std::vector<partial_track>& tracks, double ka
   return g;
 }
 
-/// The rate at which the glide dies away, between a third and three times a first guess: the one that leaves least over in the
+/// The rate at which the glide dies away, between a fifth and five times a first guess: the one that leaves least over in the
 /// clearest partials.
 inline double likeliest_glide_decay(const std::vector<partial_track>& tracks, double guess, double expected) {
   std::vector<std::pair<double, const partial_track*>> clearest;
@@ -101,7 +112,7 @@ inline double likeliest_glide_decay(const std::vector<partial_track>& tracks, do
   for (int i = 0; i < 12 && step > 1.02; ++i) {
     const double here = best;
     for (const double factor : {here / step, here * step}) {
-      if (factor < 0.3 || factor > 3.1) continue;
+      if (factor < 0.2 || factor > 5.1) continue;
       if (const double c = cost(factor); c < least) least = c, best = factor;
     }
     if (best == here) step = std::sqrt(step);
@@ -126,9 +137,9 @@ inline double likeliest_glide_decay(const std::vector<partial_track>& tracks, do
 /// The same tracks with the glide taken out: one line or two is decided anew.
 inline void take_out_glide(std::vector<partial_track>& tracks, const pitch_glide& glide, double tolerance_Hz) {
   for (partial_track& t : tracks) {
-    const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
-    const line_model one{{detail::strongest(t.fit.model, lasts)}, t.fit.model.centre_Hz, glide};
-    t.fit = one_or_two_lines(t.samples, t.rate_Hz, fit_line(t.samples, t.rate_Hz, one), tolerance_Hz, 2 * t.flat_to_Hz / t.rate_Hz);
+    const line_fit one = fit_line(t.samples, t.rate_Hz, {detail::gliding(t, glide.decay_per_s, glide.relative).model.parts, t.fit.model.centre_Hz, glide});
+    t.fit = one_or_two_lines(t.samples, t.rate_Hz, one, tolerance_Hz,
+                             detail::filled_with_noise(t.window, t.rate_Hz));
   }
 }
 
