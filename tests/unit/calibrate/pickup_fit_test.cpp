@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/calibrate/pickup_fit.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace {
+
+constexpr double rate_Hz = 44100;
+
+/// A plucked string on one pickup; glide: relative sharpness at the start, gone at 5 per second.
+std::vector<double> plucked(double f0, double b, double noise, unsigned seed, double glide = 0) {
+  std::mt19937_64 random{seed};
+  std::normal_distribution<double> gauss{0, noise};
+  std::uniform_real_distribution<double> phase{0, 6.28};
+  std::vector<double> x(66150), offset(41);
+  for (double& o : offset) o = phase(random);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double t = static_cast<double>(i) / rate_Hz - 0.1;
+    x[i] = gauss(random);
+    if (t < 0) continue;
+    const double warped = t + glide * (1 - std::exp(-5 * t)) / 5;
+    for (int n = 1; n <= 25; ++n) {
+      const double f = n * f0 * std::sqrt(1 + b * n * n);
+      x[i] += std::exp(-std::numbers::pi * f * (1 / 1200.0 + 2e-7 * f) * t) / n * std::cos(2 * std::numbers::pi * f * warped + offset[static_cast<std::size_t>(n)]);
+    }
+  }
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("pitch, inharmonicity and loss from one channel, from 2 % beside the pitch") {
+  int inside = 0, of = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const double f0 = 180 + 17.3 * seed, b = 3e-5 * seed;
+    const auto fit = rosin::fit_pickup(plucked(f0, b, 1e-3, seed), rate_Hz, f0 * (seed % 2 ? 0.98 : 1.02));
+    REQUIRE_MESSAGE(fit, fit.error());
+    CHECK(fit->fundamental_Hz == doctest::Approx(f0).epsilon(1e-4));
+    CHECK(fit->inharmonicity == doctest::Approx(b).epsilon(0.05));
+    CHECK(fit->loss.law.inverse_q(1000) == doctest::Approx(1 / 1200.0 + 2e-4).epsilon(0.1));
+    CHECK(fit->partials.size() >= 8);
+    inside += std::abs(fit->fundamental_Hz - f0) < 2 * fit->fundamental_sd ? 1 : 0;
+    inside += std::abs(fit->inharmonicity - b) < 2 * fit->inharmonicity_sd ? 1 : 0;
+    of += 2;
+  }
+  CHECK(inside >= of - 5);
+}
+
+TEST_CASE("noise, silence and what is too short are refused in words") {
+  std::mt19937_64 random{1};
+  std::normal_distribution<double> gauss;
+  std::vector<double> x(44100), zero(44100, 0.0);
+  for (double& v : x) v = gauss(random);
+  CHECK_FALSE(rosin::fit_pickup(x, rate_Hz, 220));
+  CHECK_FALSE(rosin::fit_pickup(zero, rate_Hz, 220));
+  const std::vector<double> brief(500, 0.1);
+  CHECK_FALSE(rosin::fit_pickup(brief, rate_Hz, 220));
+  CHECK_FALSE(rosin::fit_pickup(brief, rate_Hz, 220).error().empty());
+}
