@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <rosin/friction/velocity_curve.hpp>
 #include <rosin/reconstruct/fine_tune.hpp>
+
+#include <rosin/friction/velocity_curve.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
 #include <rosin/simulate/converter.hpp>
 #include <rosin/simulate/modal_stroke.hpp>

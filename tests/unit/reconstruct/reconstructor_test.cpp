@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <rosin/reconstruct/reconstructor.hpp>
+
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/reconstruct/consistency.hpp>
-#include <rosin/reconstruct/reconstructor.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 
 #include <doctest/doctest.h>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <rosin/reconstruct/streaming_reconstructor.hpp>
+
 #include <rosin/core/stage.hpp>
 #include <rosin/reconstruct/streaming_design.hpp>
-#include <rosin/reconstruct/streaming_reconstructor.hpp>
 
 #include <doctest/doctest.h>
 
