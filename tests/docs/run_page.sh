@@ -6,6 +6,8 @@
 #   ```sh no-run   not run (it installs, builds or takes long): the scripts and presets it names have to exist, and
 #                  the tool has to know the subcommands and options
 #
+# A ```sh block that installs or builds (a script of the project, cmake, apt-get, git) counts as no-run.
+#
 # The folder of the page's commands holds links to the project's files, so that relative paths work and nothing is
 # written into the checkout.
 set -euo pipefail
@@ -58,6 +60,11 @@ check_unrun() {
   done <<<"$1"
 }
 
+check_block() {
+  bash -n <<<"$block" || fail "not shell: $block"
+  check_unrun "$block"
+}
+
 # One script for the whole page, so that variables and folders carry over from block to block.
 script=.page/script; : >"$script"
 n=0 state=text block=""
@@ -80,8 +87,11 @@ while IFS= read -r line || [ -n "$line" ]; do
     text:'```sh '* | text:'```console '*) fail "unknown kind of block: $line" ;;
     text:'```'*) state=other ;;
     other:'```') state=text ;;
-    sh:'```') printf '%s' "$block" >>"$script"; state=text ;;
-    unrun:'```') bash -n <<<"$block" || fail "syntax"; check_unrun "$block"; state=text ;;
+    sh:'```')
+      if grep -qE '^(\.ci/|tests/run\.sh|examples/demo\.sh|cmake |sudo |apt-get |git )' <<<"$block"; then check_block
+      else printf '%s' "$block" >>"$script"; fi
+      state=text ;;
+    unrun:'```') check_block; state=text ;;
     console:'```') flush_command; state=text ;;
     sh:* | unrun:*) block+=$line$'\n' ;;
     console:'$ '*) flush_command; command=${line#'$ '} shown="" ;;
