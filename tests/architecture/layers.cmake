@@ -7,11 +7,13 @@ set(common core math)
 foreach(folder IN ITEMS acquire condition friction propagate report)
   set(${folder}_may_include ${common})
 endforeach()
-foreach(folder IN ITEMS torsion simulate diagnose)
-  set(${folder}_may_include ${common} propagate friction)
+foreach(folder IN ITEMS torsion simulate)
+  set(${folder}_may_include ${common} condition propagate friction)
 endforeach()
 set(calibrate_may_include ${common} condition propagate friction)
 set(reconstruct_may_include ${calibrate_may_include} calibrate)
+# What sets everything against everything.
+set(diagnose_may_include ${reconstruct_may_include} reconstruct torsion simulate)
 # An adapter joins the library and one third-party package; nothing includes an adapter.
 set(adapt_may_include ${common} acquire condition friction propagate report calibrate reconstruct torsion simulate diagnose)
 
