@@ -51,8 +51,9 @@ inline constexpr std::array<stage, 4> approach{{{4, 5}, {6, 12}, {12, 30}, {24, 
 inline constexpr std::array<double, 3> horizon_periods{1e9, 30, 8};
 
 /// One Levenberg-Marquardt descent at fixed weights. Returns whether it settled.
-inline bool descend(const pluck_problem& problem, const pluck_layout& layout, const Eigen::VectorXd& start, Eigen::VectorXd& value,
-                    int most, double enough, int& iterations) {
+template <class Problem, class Layout>
+bool descend(const Problem& problem, const Layout& layout, const Eigen::VectorXd& start, Eigen::VectorXd& value, int most,
+             double enough, int& iterations) {
   double damping = 1e-6;
   normal_equations now = problem.linearise(value);
   for (int i = 0; i < most; ++i, ++iterations) {
@@ -105,11 +106,11 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
   std::array<double, 2> noise{1e-2, 1e-2};
   for (const double within : {400.0, 1e9})  // the second descent starts sure of the pitch
     if (periods > 400 || within > 400) {
-      const pluck_problem problem(takes, result.layout, options, guess, result.value, options.most_partials,
+      const pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, options.most_partials,
                                   std::min(periods, within), true, noise);
       result.converged = descend(problem, result.layout, begin, result.value, 25, 1e-2, result.iterations);
     }
-  pluck_problem problem(takes, result.layout, options, guess, result.value, options.most_partials, periods, true, noise);
+  pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, options.most_partials, periods, true, noise);
   for (int pass = 0; pass < 2; ++pass) {
     noise = problem.assess(result.value).noise;
     problem.set_noise(noise);
@@ -140,7 +141,7 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
 
   const Eigen::VectorXd begin = result.value;
   for (const detail::stage& s : detail::approach) {
-    const pluck_problem problem(takes, result.layout, options, guess, result.value, s.partials, s.periods, false, {1e-2, 1e-2});
+    const pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, s.partials, s.periods, false, {1e-2, 1e-2});
     detail::descend(problem, result.layout, begin, result.value, 12, 1e-2, result.iterations);
   }
   const Eigen::VectorXd near = result.value;

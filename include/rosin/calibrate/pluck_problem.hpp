@@ -5,12 +5,46 @@
 // the release and after it, each a sum of damped lines; a guard of half a filter's length around the release is left out.
 // Poles and residues are differentiated numerically (they cost nothing); the sums over samples are done by damped_lines.hpp.
 //
+// What rings is the model's affair: `plain_plucks` is the string between pinned ends, and whatever else comes down to damped lines
+// (diagnosis) is fitted by the same code.
+//
 #pragma once
 
 #include <rosin/calibrate/pluck_start.hpp>
 #include <rosin/propagate/fir.hpp>
 
+#include <concepts>
+
 namespace rosin {
+
+/// Model of a set of plucks: which parameters there are, and the lines that a take consists of from `begin_s` on, before its release
+/// (part 0) or after it (part 1), seen through a band.
+template <class M>
+concept LineModel = requires(const M& m, const Eigen::VectorXd& v, Eigen::Index p, std::size_t take, const band& limits) {
+  { m.size() } -> std::convertible_to<Eigen::Index>;
+  { m.is_free(p) } -> std::same_as<bool>;
+  { m.concerns(p, take) } -> std::same_as<bool>;
+  { m.step(p, v) } -> std::same_as<double>;
+  { m.release_s(v, take) } -> std::same_as<double>;
+  { m.string(v) } -> std::same_as<ringing_string>;
+  { m.lines(v, take, std::size_t{}, 0.0, limits, 1) } -> std::same_as<std::vector<damped_line>>;
+};
+
+/// Plucks of a string between pinned ends.
+struct plain_plucks : pluck_layout {
+  std::array<double, 2> ac_coupled_Hz{};
+
+  plain_plucks(const pluck_layout& layout, std::array<double, 2> corner_Hz) : pluck_layout{layout}, ac_coupled_Hz{corner_Hz} {}
+  /// The ringing partials first, then one slow line a channel: an offset; the decay of what came before where the sensor is AC
+  /// coupled, H(s) = s / (s + w_c).
+  [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
+                                               const band& limits, int most) const {
+    std::vector<damped_line> out;
+    if (part == 1) out = pluck_lines(string(v), v[position(take)], 0, limits, most);
+    sense(out, v, take, part, begin_s, ac_coupled_Hz);
+    return out;
+  }
+};
 
 /// hessian step = gradient; `prior` is the part of the Hessian that does not come from data, `scatter` the covariance of the
 /// gradient's data part for white noise of the assumed size (less than the Hessian where the band falls off).
@@ -29,23 +63,24 @@ struct assessment {
   [[nodiscard]] double inflation() const { return misfit > 1 + 4 * std::sqrt(2 / dimensions) ? misfit : 1.0; }
 };
 
-class pluck_problem {
+template <LineModel Model>
+class line_problem {
 public:
-  pluck_problem(const std::vector<pluck_take>& takes, const pluck_layout& layout, const pluck_options& options,
-                const pluck_guess& guess, const Eigen::VectorXd& value, int partials, double periods, bool filtered,
-                std::array<double, 2> noise)
-      : layout_{layout}, ac_coupled_Hz_{guess.ac_coupled_Hz}, noise_{noise}, partials_{std::min(partials, options.most_partials)} {
-    for (Eigen::Index p = 0; p < layout.size(); ++p) prior_.push_back(layout.prior(p, takes, guess));
+  line_problem(const std::vector<pluck_take>& takes, const Model& model, const pluck_options& options,
+               const pluck_guess& guess, const Eigen::VectorXd& value, int partials, double periods, bool filtered,
+               std::array<double, 2> noise)
+      : model_{model}, noise_{noise}, partials_{std::min(partials, options.most_partials)} {
+    for (Eigen::Index p = 0; p < model.size(); ++p) prior_.push_back(model.prior(p, takes, guess));
     for (std::size_t i = 0; i < takes.size(); ++i) {
       const double rate = takes[i].rate_Hz;
-      limits_ = options.limits_for(rate, layout.string(value).partial_Hz(options.most_partials));
+      limits_ = options.limits_for(rate, model.string(value).partial_Hz(options.most_partials));
       fir kernel{0, {1.0}};
       if (filtered) kernel = shortest_fir([](double) { return 1.0; }, limits_, rate, -400, 400, 1e-5);
       else limits_ = {0.5 * rate, 0.5 * rate};
       const int guard = std::max(kernel.last(), static_cast<int>(2.5 / (options.stop_fraction - options.pass_fraction)));
-      const double release = value[layout.at(i, pluck_layout::release)] * rate;
+      const double release = model.release_s(value, i) * rate;
       const auto length = static_cast<int>(takes[i].force_N[0].size());
-      const int edge = kernel.last(), end = static_cast<int>(std::min<double>(length - edge, release + periods * rate / value[0]));
+      const int edge = kernel.last(), end = static_cast<int>(std::min<double>(length - edge, release + periods * rate / model.string(value).fundamental_Hz));
       const int before = static_cast<int>(std::floor(release)) - guard, after = static_cast<int>(std::ceil(release)) + guard;
       takes_.push_back({rate, {cut(takes[i], kernel, edge, before), cut(takes[i], kernel, std::max(after, edge), end)}});
     }
@@ -87,13 +122,14 @@ private:
     return s;
   }
 
-  [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part) const;
+  [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part) const {
+    return model_.lines(v, take, part, takes_[take].part[part].begin_s, limits_, partials_);
+  }
   [[nodiscard]] projection project(const stretch& s, double rate_Hz, const std::vector<damped_line>& lines) const;
   [[nodiscard]] std::array<Eigen::MatrixXd, 2> sensitivities(const Eigen::VectorXd& v, std::size_t take, std::size_t part,
                                                             const std::vector<damped_line>& at) const;
 
-  pluck_layout layout_;
-  std::array<double, 2> ac_coupled_Hz_;
+  Model model_;
   std::vector<pluck_layout::knowledge> prior_;
   std::array<double, 2> noise_;
   int partials_;
@@ -101,36 +137,9 @@ private:
   std::vector<prepared> takes_;
 };
 
-/// Everything that this take's recording consists of in one stretch: the ringing partials first, then one slow line a channel
-/// (an offset; the decay of what came before where the sensor is AC coupled, H(s) = s / (s + w_c)).
-inline std::vector<damped_line> pluck_problem::lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part) const {
-  const double begin = takes_[take].part[part].begin_s, release = v[layout_.at(take, pluck_layout::release)];
-  const double strength = std::exp(v[layout_.at(take, pluck_layout::strength)]);
-  const double position = v[layout_.position(take)];
-  std::vector<damped_line> out;
-  if (part == 1) out = pluck_lines(layout_.string(v), position, 0, limits_, partials_);
-  for (std::size_t c = 0; c < 2; ++c) {
-    const double gain = strength * std::exp(v[pluck_layout::gain_near + static_cast<int>(c)]);
-    const double offset = v[layout_.at(take, pluck_layout::offset_near + static_cast<int>(c))];
-    const double corner = 2 * std::numbers::pi * ac_coupled_Hz_[c];
-    double at_release = 0;
-    for (damped_line& line : out) {
-      if (line.residue[c] == 0.0) continue;
-      const std::complex<double> sensed = gain * line.residue[c] * (corner > 0 ? line.pole / (line.pole + corner) : 1.0);
-      at_release += sensed.real();
-      line.residue[c] = sensed * std::exp(line.pole * (begin - release));
-    }
-    damped_line slow{-corner, {}};
-    if (part == 0) slow.residue[c] = offset * std::exp(-corner * begin) + (corner > 0 ? 0.0 : gain * static_forces(position)[c]);
-    else if (corner == 0) slow.residue[c] = offset;
-    else slow.residue[c] = (offset * std::exp(-corner * release) - at_release) * std::exp(-corner * (begin - release));
-    out.push_back(slow);
-  }
-  return out;
-}
-
-inline pluck_problem::projection pluck_problem::project(const stretch& s, double rate_Hz,
-                                                        const std::vector<damped_line>& lines) const {
+template <LineModel Model>
+typename line_problem<Model>::projection line_problem<Model>::project(const stretch& s, double rate_Hz,
+                                                                           const std::vector<damped_line>& lines) const {
   const auto N = static_cast<Eigen::Index>(lines.size());
   Eigen::MatrixXd residues(N, 4);  // re, -im of channel 1, of channel 2
   for (Eigen::Index n = 0; n < N; ++n)
@@ -167,13 +176,14 @@ inline pluck_problem::projection pluck_problem::project(const stretch& s, double
 }
 
 /// d model / d parameter in the basis of damped_lines.hpp, per channel: P x 4N. Central differences of poles and residues.
-inline std::array<Eigen::MatrixXd, 2> pluck_problem::sensitivities(const Eigen::VectorXd& v, std::size_t take, std::size_t part,
+template <LineModel Model>
+std::array<Eigen::MatrixXd, 2> line_problem<Model>::sensitivities(const Eigen::VectorXd& v, std::size_t take, std::size_t part,
                                                                    const std::vector<damped_line>& at) const {
   const auto N = static_cast<Eigen::Index>(at.size());
-  std::array<Eigen::MatrixXd, 2> out{Eigen::MatrixXd::Zero(layout_.size(), 4 * N), Eigen::MatrixXd::Zero(layout_.size(), 4 * N)};
-  for (Eigen::Index p = 0; p < layout_.size(); ++p) {
-    if (!layout_.is_free(p) || (p >= layout_.at(0, 0) && (p < layout_.at(take, 0) || p >= layout_.at(take + 1, 0)))) continue;
-    const double h = layout_.step(p, v);
+  std::array<Eigen::MatrixXd, 2> out{Eigen::MatrixXd::Zero(model_.size(), 4 * N), Eigen::MatrixXd::Zero(model_.size(), 4 * N)};
+  for (Eigen::Index p = 0; p < model_.size(); ++p) {
+    if (!model_.is_free(p) || !model_.concerns(p, take)) continue;
+    const double h = model_.step(p, v);
     Eigen::VectorXd up = v, down = v;
     up[p] += h;
     down[p] -= h;
@@ -191,8 +201,9 @@ inline std::array<Eigen::MatrixXd, 2> pluck_problem::sensitivities(const Eigen::
   return out;
 }
 
-inline normal_equations pluck_problem::linearise(const Eigen::VectorXd& v) const {
-  const Eigen::Index P = layout_.size();
+template <LineModel Model>
+normal_equations line_problem<Model>::linearise(const Eigen::VectorXd& v) const {
+  const Eigen::Index P = model_.size();
   normal_equations eq{Eigen::MatrixXd::Zero(P, P), Eigen::MatrixXd::Zero(P, P), Eigen::MatrixXd::Zero(P, P), Eigen::VectorXd::Zero(P)};
   for (std::size_t t = 0; t < takes_.size(); ++t)
     for (std::size_t part = 0; part < 2; ++part) {
@@ -217,7 +228,7 @@ inline normal_equations pluck_problem::linearise(const Eigen::VectorXd& v) const
     }
   for (Eigen::Index p = 0; p < P; ++p) {
     const auto [known, sd] = prior_[static_cast<std::size_t>(p)];
-    if (!layout_.is_free(p)) eq.hessian(p, p) = 1;
+    if (!model_.is_free(p)) eq.hessian(p, p) = 1;
     if (sd <= 0) continue;
     eq.prior(p, p) = 1 / (sd * sd);
     eq.gradient[p] += (known - v[p]) / (sd * sd);
@@ -227,7 +238,8 @@ inline normal_equations pluck_problem::linearise(const Eigen::VectorXd& v) const
   return eq;
 }
 
-inline assessment pluck_problem::assess(const Eigen::VectorXd& v) const {
+template <LineModel Model>
+assessment line_problem<Model>::assess(const Eigen::VectorXd& v) const {
   double mean_square = 0;  // of W over the band to half the sampling rate
   for (int i = 0; i < 1000; ++i) mean_square += std::pow(limits_(takes_.front().rate_Hz * (i + 0.5) / 2000), 2) / 1000;
   assessment out;
@@ -267,5 +279,7 @@ inline assessment pluck_problem::assess(const Eigen::VectorXd& v) const {
   out.misfit = expected > 0 ? at_lines / expected : 1;
   return out;
 }
+
+using pluck_problem = line_problem<plain_plucks>;
 
 }  // namespace rosin

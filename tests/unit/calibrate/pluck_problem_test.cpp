@@ -39,7 +39,7 @@ TEST_CASE("gradient and Hessian are the derivatives of the cost, AC-coupled sens
     v[rosin::pluck_layout::inharmonicity] = 7e-5;
     v[rosin::pluck_layout::internal_loss] = 1e-8;
     v[rosin::pluck_layout::convention] = -0.5;
-    const rosin::pluck_problem problem(data, layout, options, guess, v, 12, 1e9, false, {0.1, 0.3});
+    const rosin::pluck_problem problem(data, {layout, guess.ac_coupled_Hz}, options, guess, v, 12, 1e9, false, {0.1, 0.3});
     const rosin::normal_equations at = problem.linearise(v);
     CHECK((at.hessian - at.hessian.transpose()).norm() < 1e-9 * at.hessian.norm());
     for (Eigen::Index p = 0; p < layout.size(); ++p) {
@@ -62,7 +62,7 @@ TEST_CASE("the assessment knows noise from misfit") {
   const rosin::pluck_layout layout(data, {});
   Eigen::VectorXd v = layout.initial(data, guess, 503.0, {0.003, 0.003}, {0.31, 0.31});
   for (std::size_t t = 0; t < 2; ++t) v[layout.at(t, rosin::pluck_layout::strength)] = std::log(1e-9);  // pure noise was recorded
-  const rosin::pluck_problem problem(data, layout, {}, guess, v, 160, 1e9, true, {0.1, 0.1});
+  const rosin::pluck_problem problem(data, {layout, guess.ac_coupled_Hz}, {}, guess, v, 160, 1e9, true, {0.1, 0.1});
   const rosin::assessment found = problem.assess(v);
   CHECK(found.noise[0] == doctest::Approx(0.2).epsilon(0.06));
   CHECK(found.misfit == doctest::Approx(1).epsilon(0.15));
