@@ -96,6 +96,7 @@
 #include <rosin/friction/enhanced_thermal.hpp>
 #include <rosin/friction/friction_curves.hpp>
 #include <rosin/friction/friction_law.hpp>
+#include <rosin/friction/slip_phases.hpp>
 #include <rosin/friction/thermal_plastic.hpp>
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/friction/yield_curve.hpp>
