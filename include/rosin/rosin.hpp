@@ -88,6 +88,11 @@
 #include <rosin/reconstruct/streaming_reconstructor.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
 
+#include <rosin/torsion/contact_signal.hpp>
+#include <rosin/torsion/stick_data.hpp>
+#include <rosin/torsion/stick_regression.hpp>
+#include <rosin/torsion/torsion_fit.hpp>
+#include <rosin/torsion/torsion_modes.hpp>
 #include <rosin/torsion/torsion_response.hpp>
 
 #include <rosin/friction/contact_heat.hpp>

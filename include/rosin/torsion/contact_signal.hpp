@@ -1,0 +1,78 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// One signal of a take, ready to be put through many transfer functions: transformed once, multiplied and transformed back for each.
+// Whatever is compared while the string sticks goes through smooth_window besides: a squared cosine over the whole band,
+// whose kernel is confined to a few samples, whereas that of a flat band with steep edges rings from every slip far into the
+// sticking. Before the record the signal had its first value for ever; behind it, it returns gently to it in a padding.
+//
+#pragma once
+
+#include <rosin/math/fft.hpp>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <span>
+#include <vector>
+
+namespace rosin {
+
+/// cos^2(pi f / (2 edge)), zero from the edge on.
+struct smooth_window {
+  double edge_Hz = 0;
+
+  [[nodiscard]] double operator()(double frequency_Hz) const noexcept {
+    if (!(std::abs(frequency_Hz) < edge_Hz)) return 0;
+    const double c = std::cos(0.5 * std::numbers::pi * frequency_Hz / edge_Hz);
+    return c * c;
+  }
+  /// Samples to either side beyond which the kernel is below 1e-3 of what it integrates to.
+  [[nodiscard]] std::size_t reach(double rate_Hz) const noexcept { return static_cast<std::size_t>(std::ceil(1.75 * rate_Hz / edge_Hz)); }
+};
+
+template <class Fft = eigen_fft<double>>
+class contact_signal {
+public:
+  /// `memory_s`: how long the longest transfer function rings. Preconditions: all samples are numbers, there is at least one.
+  contact_signal(std::span<const double> samples, double rate_Hz, double memory_s = 0.03)
+      : samples_{samples.size()}, rate_Hz_{rate_Hz}, first_{samples.front()}, fft_(fast_size(samples.size() + padding(rate_Hz, memory_s))) {
+    const std::size_t pad = padding(rate_Hz, memory_s);
+    buffer_.assign(fft_.size(), 0.0);
+    for (std::size_t i = 0; i < samples_; ++i) buffer_[i] = samples[i] - first_;
+    const double end = buffer_[samples_ - 1];
+    for (std::size_t i = 0; i < pad / 2; ++i)
+      buffer_[samples_ + i] = 0.5 * end * (1 + std::cos(std::numbers::pi * static_cast<double>(i + 1) / static_cast<double>(pad / 2 + 1)));
+    bins_.resize(fft_.size() / 2 + 1);
+    work_.resize(bins_.size());
+    fft_.forward(buffer_.data(), bins_.data());
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return samples_; }
+
+  /// The signal through a transfer function of the frequency in Hz and the window; the transfer function is asked inside it only.
+  template <class Transfer>
+  [[nodiscard]] std::vector<double> through(const smooth_window& window, const Transfer& transfer) {
+    const double step = rate_Hz_ / static_cast<double>(fft_.size());
+    for (std::size_t k = 0; k < bins_.size(); ++k) {
+      const double f = static_cast<double>(k) * step, w = window(f);
+      work_[k] = w > 0 ? bins_[k] * (w * std::complex<double>(transfer(f))) : std::complex<double>(0);
+    }
+    fft_.inverse(work_.data(), buffer_.data());
+    const double steady = first_ * std::complex<double>(transfer(0.0)).real();
+    std::vector<double> out(samples_);
+    for (std::size_t i = 0; i < samples_; ++i) out[i] = buffer_[i] + steady;
+    return out;
+  }
+
+private:
+  static std::size_t padding(double rate_Hz, double memory_s) { return static_cast<std::size_t>(2 * memory_s * rate_Hz) + 64; }
+
+  std::size_t samples_;
+  double rate_Hz_, first_;
+  Fft fft_;
+  std::vector<double> buffer_;
+  std::vector<std::complex<double>> bins_, work_;
+};
+
+}  // namespace rosin

@@ -1,0 +1,108 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Bowed takes of one rig, reconstructed, seen while the string sticks. Everything that is linear in the force (torsion, a rod that
+// gives way, bristles that bend) becomes a column of samples; whatever else moves the surface is a column too. Of each
+// record its middle is used: the stroke's start, in which the rod gathers speed, is left out.
+//
+#pragma once
+
+#include <rosin/friction/slip_phases.hpp>
+#include <rosin/torsion/contact_signal.hpp>
+#include <rosin/torsion/stick_regression.hpp>
+
+#include <array>
+
+namespace rosin {
+
+/// One reconstructed stroke. Samples that are not numbers may stand at both ends only.
+struct stick_take {
+  std::span<const double> force_N, velocity_m_s;  ///< at the contact; velocity of the string's centre
+  double rate_Hz = 0;
+  double rod_speed_m_s = 0;                       ///< of the steady stroke, with its sign
+  std::array<double, 2> delay_s{};                ///< transverse travel times from the contact to the ends
+  double impedance_Ns_m = 0;                      ///< transverse
+  double velocity_sd_m_s = 0;                     ///< noise of the reconstruction
+  double edge_Hz = 0;                             ///< where the reconstruction's band ends; 0: 0.45 of the rate
+  double start_s = 0.03;                          ///< left out at the beginning, a quarter of the record at most
+};
+
+/// A take with its force transformed and its velocity smoothed and taken against the rod.
+class stick_record {
+public:
+  explicit stick_record(const stick_take& take) : take_{take}, begin_{first(take)}, force_{known(take.force_N), take.rate_Hz} {
+    contact_signal<> velocity{known(take.velocity_m_s), take.rate_Hz};
+    relative_ = velocity.through(window(), [](double) { return 1.0; });
+    for (double& v : relative_) v -= take.rod_speed_m_s;
+  }
+
+  /// Known samples that count: all but the start and a reach of the window at the end.
+  [[nodiscard]] std::size_t begin() const noexcept {
+    return std::min(relative_.size() / 4, static_cast<std::size_t>(take_.start_s * take_.rate_Hz));
+  }
+  [[nodiscard]] std::size_t end() const noexcept { return relative_.size() - std::min(relative_.size(), reach()); }
+  /// Index in the take's own arrays of the first known sample.
+  [[nodiscard]] std::size_t origin() const noexcept { return begin_; }
+  [[nodiscard]] std::size_t size() const noexcept { return relative_.size(); }
+  [[nodiscard]] const stick_take& take() const noexcept { return take_; }
+  [[nodiscard]] smooth_window window() const noexcept { return {take_.edge_Hz > 0 ? take_.edge_Hz : 0.45 * take_.rate_Hz}; }
+  [[nodiscard]] std::size_t reach() const noexcept { return window().reach(take_.rate_Hz); }
+
+  /// The centre's velocity less the rod's, smoothed.
+  [[nodiscard]] const std::vector<double>& relative_m_s() const noexcept { return relative_; }
+  /// The force through a transfer function, smoothed.
+  template <class Transfer>
+  [[nodiscard]] std::vector<double> force_through(const Transfer& transfer) {
+    return force_.through(window(), transfer);
+  }
+  [[nodiscard]] std::span<const double> known(std::span<const double> samples) const { return samples.subspan(begin_, last(take_) - begin_); }
+
+private:
+  [[nodiscard]] static bool is_known(const stick_take& t, std::size_t i) { return std::isfinite(t.force_N[i]) && std::isfinite(t.velocity_m_s[i]); }
+  [[nodiscard]] static std::size_t first(const stick_take& t) {
+    std::size_t i = 0;
+    while (i + 1 < t.force_N.size() && !is_known(t, i)) ++i;
+    return i;
+  }
+  [[nodiscard]] static std::size_t last(const stick_take& t) {
+    std::size_t i = std::min(t.force_N.size(), t.velocity_m_s.size());
+    while (i > 1 && !is_known(t, i - 1)) --i;
+    return i;
+  }
+
+  stick_take take_;
+  std::size_t begin_;
+  contact_signal<> force_;
+  std::vector<double> relative_;
+};
+
+/// Samples of a record at which the string sticks if its surface moves as `relative_m_s` says; a window's reach inside.
+[[nodiscard]] inline std::vector<char> sticking_samples(const stick_record& record, const std::vector<double>& relative_m_s,
+                                                        const phase_options& options = {}) {
+  const auto phases = find_phases(std::span(relative_m_s).subspan(record.begin(), record.end() - record.begin()), record.take().rod_speed_m_s, options);
+  const auto inside = interior(phases.sticks, record.end() - record.begin(), record.reach());
+  std::vector<char> all(record.size(), 0);
+  std::copy(inside.begin(), inside.end(), all.begin() + static_cast<std::ptrdiff_t>(record.begin()));
+  return all;
+}
+
+/// Picks the marked samples of columns of samples.
+[[nodiscard]] inline stick_rows pick(const std::vector<char>& marked, const std::vector<double>& target, const std::vector<std::vector<double>>& shared,
+                                     const std::vector<std::vector<double>>& own) {
+  stick_rows rows;
+  for (std::size_t i = 0; i < marked.size(); ++i)
+    if (marked[i]) rows.sample.push_back(i);
+  const auto n = static_cast<Eigen::Index>(rows.sample.size());
+  const auto take = [&](const std::vector<double>& from, auto to) {
+    for (Eigen::Index i = 0; i < n; ++i) to[i] = from[rows.sample[static_cast<std::size_t>(i)]];
+  };
+  rows.target.resize(n);
+  rows.shared.resize(n, static_cast<Eigen::Index>(shared.size()));
+  rows.own.resize(n, static_cast<Eigen::Index>(own.size()));
+  take(target, rows.target.segment(0, n));
+  for (std::size_t c = 0; c < shared.size(); ++c) take(shared[c], rows.shared.col(static_cast<Eigen::Index>(c)));
+  for (std::size_t c = 0; c < own.size(); ++c) take(own[c], rows.own.col(static_cast<Eigen::Index>(c)));
+  return rows;
+}
+
+}  // namespace rosin

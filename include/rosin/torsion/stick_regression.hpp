@@ -1,0 +1,154 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Least squares for what should be steady while the string sticks, over several takes: coefficients that all takes share, and some
+// that each has of its own (its level). Residuals follow Student's t with 4 degrees of freedom: a slip that was taken for
+// sticking counts little. Iterated weights reach its maximum of likelihood.
+//
+// Neighbouring samples are not independent, the band limit and every model's error see to that. So rows are counted by the
+// residual's correlation (`effective`), and standard errors come from the scatter of whole blocks of rows (the sandwich of
+// Huber and White) and not from the rows' number.
+//
+#pragma once
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace rosin {
+
+/// The rows of one take: target = shared * s + own * o + residual. `sample` says from where each row is (ascending).
+struct stick_rows {
+  Eigen::VectorXd target;
+  Eigen::MatrixXd shared, own;
+  std::vector<std::size_t> sample;
+};
+
+struct stick_solution {
+  Eigen::VectorXd shared;             ///< coefficients common to all takes
+  std::vector<Eigen::VectorXd> own;   ///< of each take
+  Eigen::MatrixXd covariance;         ///< of `shared`, by blocks
+  std::vector<Eigen::VectorXd> residual;
+  double scale = 0;                   ///< of Student's t; about the standard deviation of the bulk
+  double log_likelihood = 0;          ///< per effective row, summed over the effective rows
+  double rows = 0, effective = 0;
+};
+
+/// Gaussian knowledge of the shared coefficients: precision 0 where there is none.
+struct stick_prior {
+  Eigen::VectorXd centre, precision;
+};
+
+namespace detail {
+
+inline constexpr double student_freedom = 4;
+
+[[nodiscard]] inline double student_log_density(double x, double scale) {
+  constexpr double nu = student_freedom;  // ln Gamma((nu+1)/2) - ln Gamma(nu/2) - ln(nu pi) / 2 for nu = 4
+  return -0.98082925301172623 - std::log(scale) - 0.5 * (nu + 1) * std::log1p(x * x / (nu * scale * scale));
+}
+
+/// Mean number of rows that one independent row is worth, from the autocorrelation over up to `lags` samples.
+[[nodiscard]] inline double rows_per_independent(const std::vector<stick_rows>& takes, const std::vector<Eigen::VectorXd>& residual,
+                                                 double scale, std::size_t lags = 32) {
+  std::vector<double> sum(lags + 1, 0.0), count(lags + 1, 0.0);
+  for (std::size_t t = 0; t < takes.size(); ++t) {
+    const auto& at = takes[t].sample;
+    const auto clipped = [&](std::size_t i) { return std::clamp(residual[t][static_cast<Eigen::Index>(i)], -3 * scale, 3 * scale); };
+    for (std::size_t i = 0; i < at.size(); ++i)
+      for (std::size_t j = i; j < at.size() && at[j] - at[i] <= lags; ++j) {
+        sum[at[j] - at[i]] += clipped(i) * clipped(j);
+        count[at[j] - at[i]] += 1;
+      }
+  }
+  if (!(count[0] > 0) || !(sum[0] > 0)) return 1;
+  double total = 1;
+  for (std::size_t lag = 1; lag <= lags && count[lag] > 50; ++lag) total += 2 * std::abs(sum[lag] / count[lag]) / (sum[0] / count[0]);
+  return std::max(1.0, total);
+}
+
+struct stacked {
+  Eigen::MatrixXd x;
+  Eigen::VectorXd y;
+  std::vector<Eigen::Index> first;  // row of each take, and the end
+};
+
+[[nodiscard]] inline stacked stack(const std::vector<stick_rows>& takes) {
+  stacked s;
+  Eigen::Index rows = 0, columns = takes.empty() ? 0 : takes.front().shared.cols();
+  for (const auto& t : takes) s.first.push_back(rows), rows += t.target.size(), columns += t.own.cols();
+  s.first.push_back(rows);
+  s.x = Eigen::MatrixXd::Zero(rows, columns);
+  s.y.resize(rows);
+  Eigen::Index own = takes.empty() ? 0 : takes.front().shared.cols();
+  for (std::size_t t = 0; t < takes.size(); ++t) {
+    const Eigen::Index n = takes[t].target.size();
+    s.y.segment(s.first[t], n) = takes[t].target;
+    s.x.block(s.first[t], 0, n, takes[t].shared.cols()) = takes[t].shared;
+    s.x.block(s.first[t], own, n, takes[t].own.cols()) = takes[t].own;
+    own += takes[t].own.cols();
+  }
+  return s;
+}
+
+/// Inverse Hessian times the scatter of blocks' gradients times inverse Hessian.
+[[nodiscard]] inline Eigen::MatrixXd sandwich(const stacked& s, const Eigen::VectorXd& weighted_residual, const Eigen::MatrixXd& inverse) {
+  constexpr Eigen::Index blocks = 24;
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
+  for (std::size_t t = 0; t + 1 < s.first.size(); ++t)
+    for (Eigen::Index b = 0, n = s.first[t + 1] - s.first[t]; b < blocks; ++b) {
+      const Eigen::Index from = s.first[t] + n * b / blocks, size = s.first[t] + n * (b + 1) / blocks - from;
+      const Eigen::VectorXd gradient = s.x.middleRows(from, size).transpose() * weighted_residual.segment(from, size);
+      scatter += gradient * gradient.transpose();
+    }
+  return inverse * scatter * inverse;
+}
+
+}  // namespace detail
+
+/// Preconditions: all takes have as many shared columns; rows in all exceed the columns. `floor`: least scale.
+[[nodiscard]] inline stick_solution stick_regression(const std::vector<stick_rows>& takes, double floor = 0, const stick_prior& prior = {}) {
+  const detail::stacked s = detail::stack(takes);
+  const Eigen::Index shared = takes.front().shared.cols(), all = s.x.cols(), n = s.y.size();
+  Eigen::VectorXd weight = Eigen::VectorXd::Ones(n), value = Eigen::VectorXd::Zero(all), residual = s.y;
+  Eigen::MatrixXd hessian;
+  stick_solution out;
+  out.scale = std::max(floor, std::sqrt(s.y.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, n))));
+  for (int pass = 0; pass < 12; ++pass) {
+    const Eigen::MatrixXd wx = weight.asDiagonal() * s.x;
+    hessian = s.x.transpose() * wx;
+    Eigen::VectorXd gradient = wx.transpose() * s.y;
+    if (prior.precision.size() == shared) {
+      hessian.diagonal().head(shared) += prior.precision * (out.scale * out.scale);
+      gradient.head(shared) += prior.precision.cwiseProduct(prior.centre) * (out.scale * out.scale);
+    }
+    hessian.diagonal() *= 1 + 1e-12;
+    value = hessian.ldlt().solve(gradient);
+    residual = s.y - s.x * value;
+    for (int inner = 0; inner < 3; ++inner) {
+      const double s2 = out.scale * out.scale;
+      weight = ((residual.array().square() / s2 + detail::student_freedom).inverse() * (detail::student_freedom + 1)).matrix();
+      out.scale = std::max(floor, std::sqrt(weight.dot(residual.cwiseAbs2()) / static_cast<double>(n)));
+    }
+  }
+  out.shared = value.head(shared);
+  Eigen::Index at = shared;
+  for (std::size_t t = 0; t < takes.size(); at += takes[t].own.cols(), ++t) {
+    out.own.push_back(value.segment(at, takes[t].own.cols()));
+    out.residual.push_back(residual.segment(s.first[t], s.first[t + 1] - s.first[t]));
+  }
+  const Eigen::ArrayXd ratio = residual.array().square() / (out.scale * out.scale), nu = Eigen::ArrayXd::Constant(n, detail::student_freedom);
+  const double slope = ((nu + 1) * (nu - ratio) / (nu + ratio).square()).sum() / weight.sum();  // of the influence, against the weights
+  const Eigen::MatrixXd inverse = hessian.ldlt().solve(Eigen::MatrixXd::Identity(all, all)) / std::max(0.2, slope);
+  out.covariance = detail::sandwich(s, weight.cwiseProduct(residual), inverse).topLeftCorner(shared, shared);
+  out.rows = static_cast<double>(n);
+  out.effective = out.rows / detail::rows_per_independent(takes, out.residual, out.scale);
+  for (Eigen::Index i = 0; i < n; ++i) out.log_likelihood += detail::student_log_density(residual[i], out.scale);
+  out.log_likelihood *= out.effective / std::max(1.0, out.rows);
+  return out;
+}
+
+}  // namespace rosin

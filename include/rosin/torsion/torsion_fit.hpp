@@ -1,0 +1,240 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Torsion from what the transducers cannot see of it: while the string sticks, its surface moves with the rod, so that the centre's
+// velocity and the torsional velocity under the reconstructed force have to add up to a constant (Woodhouse, Schumacher &
+// Garoff (2000), section IV, who chose the three parameters by eye). Here they are fitted to several takes together:
+//
+//     v_centre(t) + (h_T * f)(t) + (C1 d/dt + C3 d^3/dt^3) f(t) = level      wherever it sticks,
+//
+// with a level for each take (errors of the scales) and two small terms C1, C3 for what the contact yields besides (what a string
+// of finite thickness, or a simulation of finitely many modes, does differently from a point on an ideal one). Sticking is
+// found, not given, and found anew as torsion gets clearer. A grid of speeds, on a part of one take and with a cost that
+// bears slips, finds where to start; Gauss-Newton steps do the rest, for both conventions of damping; the likelier wins.
+//
+#pragma once
+
+#include <rosin/core/outcome.hpp>
+#include <rosin/torsion/stick_data.hpp>
+#include <rosin/torsion/torsion_modes.hpp>
+#include <rosin/torsion/torsion_response.hpp>
+
+#include <optional>
+#include <string>
+
+namespace rosin {
+
+/// The ratios torsional / transverse, and the quality.
+struct torsion_values {
+  double speed_ratio = 0, impedance_ratio = 0, q = 0;
+  [[nodiscard]] Eigen::Vector3d logs() const { return {std::log(speed_ratio), std::log(impedance_ratio), std::log(q)}; }
+  [[nodiscard]] static torsion_values from_logs(const Eigen::Vector3d& x) { return {std::exp(x[0]), std::exp(x[1]), std::exp(x[2])}; }
+};
+
+/// How the loss is shared out between the resonances (torsion_modes.hpp).
+enum class torsion_damping { constant_q, viscous_modes };
+
+/// Surface velocity for 1 N at the contact of a take.
+struct torsion_at_contact {
+  torsion_waveguide guide;
+  torsion_damping damping = torsion_damping::constant_q;
+
+  torsion_at_contact(const stick_take& take, const torsion_values& v, torsion_damping d)
+      : guide{torsion_of(take.delay_s, take.impedance_Ns_m, v.speed_ratio, v.impedance_ratio, v.q)}, damping{d} {}
+  [[nodiscard]] std::complex<double> operator()(double f) const noexcept {
+    return damping == torsion_damping::constant_q ? guide(f) : torsion_modes{guide.delay_s, guide.impedance_Ns_m, guide.q, 40}(f);
+  }
+};
+
+struct torsion_fit_result {
+  torsion_values value{}, sd{};
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the logarithms
+  torsion_damping damping = torsion_damping::constant_q;
+  std::array<double, 2> rest{};       ///< C1 in m/N, C3 in m s^2/N
+  double gain = 0;                    ///< log-likelihood over that of a string that does not turn
+  double fluctuation = 0;             ///< of the surface while sticking, relative to the rod's speed
+  double sticking = 0;                ///< share of the samples that were used
+  std::vector<std::string> undecided{}; ///< what these takes cannot tell, and why
+
+  [[nodiscard]] bool decided() const noexcept { return undecided.empty(); }
+};
+
+namespace detail {
+
+/// What neither convention of damping nor C1, C3 absorb, in the logarithms: measured on simulated rigs of both conventions.
+inline const Eigen::Vector3d torsion_model_error{0.0007, 0.008, 0.02};
+
+inline constexpr double compliance_unit = 1e-6, compliance_corner_Hz = 5e4;  ///< columns of comparable size
+
+[[nodiscard]] inline std::vector<std::vector<double>> compliance_columns(stick_record& record) {
+  const auto first = [](double f) { return std::complex<double>(0, 2 * std::numbers::pi * f * compliance_unit); };
+  const auto third = [&](double f) { return first(f) * std::pow(f / compliance_corner_Hz, 2); };
+  return {record.force_through(first), record.force_through(third)};
+}
+
+inline void add_to(std::vector<double>& to, const std::vector<double>& what, double factor = 1) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * what[i];
+}
+
+/// Where the fit stands; `shared` are the coefficients of the compliance columns.
+struct torsion_state {
+  torsion_values at{};
+  torsion_damping damping = torsion_damping::constant_q;
+  Eigen::Vector2d rest = Eigen::Vector2d::Zero();
+  stick_solution solution{};
+  bool sane = true;
+};
+
+/// Log-likelihood of a section of a record with Cauchy's density, slips and all, for a torsional shape whose size is free.
+[[nodiscard]] inline double cauchy_cost(const std::vector<double>& target, const std::vector<double>& shape, const std::vector<double>& slope,
+                                        std::size_t begin, std::size_t end, double speed, double& size) {
+  Eigen::Vector3d value(0, size, 0);
+  double cost = 0;
+  for (const double scale : {1.0, 0.5, 0.25, 0.12, 0.12, 0.12}) {
+    Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d g = Eigen::Vector3d::Zero();
+    const double s2 = std::pow(scale * speed, 2);
+    cost = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d x(1, shape[i], slope[i]);
+      const double r = target[i] + x.dot(value), w = 1 / (1 + r * r / s2);
+      h += w * x * x.transpose();
+      g -= w * target[i] * x;
+      cost -= std::log(w);
+    }
+    h.diagonal().array() += 1e-12 * h.diagonal().maxCoeff();
+    value = h.ldlt().solve(g);
+    value[1] = std::max(value[1], 0.0);
+  }
+  size = value[1];
+  return cost;
+}
+
+/// The likeliest starting points, best first.
+[[nodiscard]] inline std::vector<torsion_values> torsion_starts(stick_record& record, std::size_t wanted) {
+  const std::size_t begin = record.begin(), end = std::min(record.end(), begin + 12000);
+  const auto slope = compliance_columns(record)[0];
+  std::vector<std::pair<double, torsion_values>> found;
+  for (const double q : {13.0, 35.0})
+    for (double speed = 4.2; speed < 11.5; speed *= 1.02) {
+      const auto shape = record.force_through(torsion_at_contact(record.take(), {speed, 3.5, q}, torsion_damping::constant_q));
+      double size = 1;
+      const double cost = cauchy_cost(record.relative_m_s(), shape, slope, begin, end, std::abs(record.take().rod_speed_m_s), size);
+      if (size > 0.05) found.push_back({cost, {speed, 3.5 / size, q}});
+    }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<torsion_values> starts;
+  for (const auto& [cost, v] : found)
+    if (starts.size() < wanted && std::none_of(starts.begin(), starts.end(), [&](const auto& s) { return std::abs(std::log(s.speed_ratio / v.speed_ratio)) < 0.05; }))
+      starts.push_back(v);
+  return starts;
+}
+
+/// One Gauss-Newton step in the logarithms, everything linear solved for along with it. `move` false: evaluated only.
+inline void torsion_step(std::vector<stick_record>& records, torsion_state& state, bool move, double most = 0.6) {
+  std::vector<stick_rows> rows;
+  const Eigen::Vector3d here = state.at.logs();
+  for (auto& record : records) {
+    auto base = record.force_through(torsion_at_contact(record.take(), state.at, state.damping));
+    std::vector<std::vector<double>> shared = compliance_columns(record);
+    for (int k = 0; move && k < 3; ++k) {
+      Eigen::Vector3d aside = here;
+      aside[k] += k == 0 ? 1e-4 : 1e-3;
+      auto other = record.force_through(torsion_at_contact(record.take(), torsion_values::from_logs(aside), state.damping));
+      add_to(other, base, -1);
+      for (double& v : other) v /= aside[k] - here[k];
+      shared.push_back(std::move(other));
+    }
+    add_to(base, record.relative_m_s());
+    auto now = base;
+    for (Eigen::Index k = 0; k < 2; ++k) add_to(now, shared[static_cast<std::size_t>(k)], state.rest[k]);
+    const auto marked = sticking_samples(record, now, {.most = most});
+    for (auto& column : shared)
+      for (double& v : column) v = -v;
+    rows.push_back(pick(marked, base, shared, {std::vector<double>(base.size(), 1.0)}));
+  }
+  double total = 0;
+  for (const auto& r : rows) total += static_cast<double>(r.target.size());
+  if (total < 200) {
+    state.sane = false;
+    return;
+  }
+  state.solution = stick_regression(rows);
+  state.rest = state.solution.shared.head(2);
+  if (!move) return;
+  Eigen::Vector3d step = state.solution.shared.tail(3);
+  step = step.cwiseMax(Eigen::Vector3d(-0.03, -0.3, -0.5)).cwiseMin(Eigen::Vector3d(0.03, 0.3, 0.5));
+  state.at = torsion_values::from_logs(here + step);
+  const auto& v = state.at;
+  state.sane = v.speed_ratio > 1.5 && v.speed_ratio < 40 && v.impedance_ratio > 0.2 && v.impedance_ratio < 60 && v.q > 1.5 && v.q < 1000;
+}
+
+[[nodiscard]] inline torsion_state settle(std::vector<stick_record>& records, torsion_state state, int steps) {
+  for (int i = 0; i < steps && state.sane; ++i) torsion_step(records, state, true, i < 2 ? 0.6 : 0.4);
+  return state;
+}
+
+/// Likelihoods are comparable only if all agree on what sticks: mean log density per sample inside the phases of each, less what is lost.
+[[nodiscard]] inline double score(const torsion_state& s) {
+  return s.sane ? s.solution.rows * std::log(1 / s.solution.scale) : -1e300;
+}
+
+[[nodiscard]] inline std::vector<stick_record> records_of(const std::vector<stick_take>& takes) {
+  std::vector<stick_record> records;
+  for (const auto& t : takes) {
+    std::size_t known = 0;
+    for (std::size_t i = 0; i < std::min(t.force_N.size(), t.velocity_m_s.size()); ++i)
+      known += std::isfinite(t.force_N[i]) && std::isfinite(t.velocity_m_s[i]) ? 1U : 0U;
+    if (known >= 500 && t.rod_speed_m_s != 0) records.emplace_back(t);
+  }
+  return records;
+}
+
+inline void judge_torsion(const torsion_state& best, const std::vector<stick_record>& records, torsion_fit_result& r) {
+  double usable = 0, speed = 0;
+  for (const auto& record : records) usable += static_cast<double>(record.end() - record.begin()), speed += std::abs(record.take().rod_speed_m_s);
+  r.sticking = best.solution.rows / std::max(1.0, usable);
+  r.fluctuation = best.solution.scale * static_cast<double>(records.size()) / speed;
+  r.covariance = best.solution.covariance.bottomRightCorner(3, 3);
+  r.covariance.diagonal() += torsion_model_error.cwiseAbs2();
+  const Eigen::Vector3d sd = r.covariance.diagonal().cwiseSqrt();
+  r.sd = {r.value.speed_ratio * sd[0], r.value.impedance_ratio * sd[1], r.value.q * sd[2]};
+  if (r.sticking < 0.02) r.undecided.emplace_back("the string hardly sticks: " + std::to_string(static_cast<long>(best.solution.rows)) + " samples in all");
+  if (sd[0] > 0.05) r.undecided.emplace_back("speed ratio: the contact lies near a node, or the takes are too noisy or too short");
+  if (sd[1] > 0.25) r.undecided.emplace_back("impedance ratio: torsion hardly shows beside the noise");
+  if (sd[2] > 0.5) r.undecided.emplace_back("q: the torsional resonance is not resolved");
+  if (r.gain < 20) r.undecided.emplace_back("torsion: a string that does not turn explains the takes as well");
+}
+
+}  // namespace detail
+
+/// Fits torsion to all takes together. `start`: declared values, tried beside the grid. Fails where nothing sticks.
+[[nodiscard]] inline outcome<torsion_fit_result> fit_torsion(const std::vector<stick_take>& takes, std::optional<torsion_values> start = {}) {
+  auto records = detail::records_of(takes);
+  if (records.empty()) return failure{"torsion: no bowed take with 500 known samples and a known speed of the rod"};
+  auto starts = detail::torsion_starts(records.front(), 3);
+  if (start) starts.insert(starts.begin(), *start);
+  detail::torsion_state best{.sane = false};
+  for (const auto& s : starts) {
+    const auto tried = detail::settle(records, {.at = s}, 3);
+    if (detail::score(tried) > detail::score(best)) best = tried;
+  }
+  if (!best.sane) return failure{"torsion: the string does not stick to the rod for long enough anywhere in these takes"};
+  auto other = best;
+  other.damping = torsion_damping::viscous_modes;
+  best = detail::settle(records, best, 3);
+  other = detail::settle(records, other, 4);
+  if (detail::score(other) > detail::score(best)) best = other;
+  if (!best.sane) return failure{"torsion: the fit ran away: no torsion makes the surface steady while it sticks"};
+  torsion_fit_result result{.value = best.at, .damping = best.damping};
+  result.rest = {best.rest[0] * detail::compliance_unit,
+                 -best.rest[1] * detail::compliance_unit / std::pow(2 * std::numbers::pi * detail::compliance_corner_Hz, 2)};
+  detail::torsion_state rigid = best;
+  rigid.at.impedance_ratio = 1e9;
+  detail::torsion_step(records, rigid, false);
+  result.gain = rigid.sane ? best.solution.effective * std::log(rigid.solution.scale / best.solution.scale) : best.solution.effective;
+  detail::judge_torsion(best, records, result);
+  return result;
+}
+
+}  // namespace rosin

@@ -1,0 +1,50 @@
+// tier: freestanding
+// SPDX-License-Identifier: MIT
+//
+// The same torsion as torsion_response.hpp with another convention of damping: every mode is a viscously damped oscillator,
+//
+//     v_T / f = (2 / M) sum_n sin^2(n pi p) i w / (w_n^2 - w^2 + i w w_n / Q),    M = Z_T tau,  w_n = n pi / tau,
+//
+// tau the torsional travel time over the whole length, p the contact's place. At equal Q the two conventions agree at the
+// resonances and differ by a good part of 1/Q in phase between them: with Q about 15 that is more than a good
+// reconstruction leaves open, so that a fit of torsion has to try both. The sum ends after `modes`; what the rest adds below
+// them is a compliance (rest_m_N) and small beside it.
+//
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace rosin {
+
+struct torsion_modes {
+  std::array<double, 2> delay_s{};  ///< torsional travel times to the near and the far end
+  double impedance_Ns_m = 0;        ///< referred to the surface
+  double q = 15;
+  int modes = 60;
+
+  /// Surface velocity for 1 N at a frequency in Hz, m/s per N.
+  [[nodiscard]] std::complex<double> operator()(double frequency_Hz) const noexcept {
+    const double w = 2 * std::numbers::pi * frequency_Hz, tau = delay_s[0] + delay_s[1], first = std::numbers::pi / tau;
+    const std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * delay_s[0] / tau);
+    std::complex<double> sum = 0, place = 1;
+    for (int n = 1; n <= modes; ++n) {
+      place *= turn;  // 2 sin^2(n pi p) = 1 - cos(2 n pi p)
+      const double wn = n * first, re = wn * wn - w * w, im = w * wn / q, scale = (1 - place.real()) / (re * re + im * im);
+      sum += std::complex<double>(re * scale, -im * scale);
+    }
+    return std::complex<double>(0, w) * sum / (impedance_Ns_m * tau);
+  }
+
+  /// Compliance of the modes left out, m/N: what all modes yield under a steady force, less those of the sum.
+  [[nodiscard]] double rest_m_N() const noexcept {
+    const double tau = delay_s[0] + delay_s[1], first = std::numbers::pi / tau, p = delay_s[0] / tau;
+    double sum = 0;
+    for (int n = 1; n <= modes; ++n) sum += 2 * std::pow(std::sin(n * std::numbers::pi * p) / (n * first), 2);
+    return delay_s[0] * delay_s[1] / (tau * impedance_Ns_m) - sum / (impedance_Ns_m * tau);
+  }
+};
+
+}  // namespace rosin

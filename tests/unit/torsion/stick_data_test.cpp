@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/torsion/stick_data.hpp>
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+TEST_CASE("stick data: unknown ends are left out, the start is not used, the rod's speed is taken off") {
+  std::vector<double> force(6000, 0.2), velocity(6000, 0.21);
+  for (std::size_t i = 0; i < 50; ++i) force[i] = velocity[i] = unknown, velocity[5999 - i] = unknown;
+  rosin::stick_record record({force, velocity, 128e3, 0.2, {2e-4, 5e-4}, 0.17, 1e-3, 57600, 0.005});
+  CHECK(record.origin() == 50);
+  CHECK(record.size() == 5900);
+  CHECK(record.begin() == 640);
+  CHECK(record.end() == 5900 - record.reach());
+  for (std::size_t i = record.begin(); i < record.end(); ++i) CHECK(std::abs(record.relative_m_s()[i] - 0.01) < 1e-9);
+  for (const double v : record.force_through([](double f) { return f == 0 ? 3.0 : 3.0; })) CHECK(std::abs(v - 0.6) < 1e-9);
+}
+
+TEST_CASE("stick data: sticking samples keep a window's reach from every slip") {
+  std::vector<double> force(4000, 0.2), velocity(4000, 0.2);
+  for (std::size_t i = 2000; i < 2100; ++i) velocity[i] = -1;
+  rosin::stick_record record({force, velocity, 128e3, 0.2, {2e-4, 5e-4}, 0.17, 1e-3, 57600, 0.005});
+  const auto marked = rosin::sticking_samples(record, record.relative_m_s());
+  CHECK(marked[1990] == 1);
+  for (std::size_t i = 2000 - record.reach() + 1; i < 2100 + record.reach(); ++i) CHECK(marked[i] == 0);
+  CHECK(marked[2110] == 1);
+  CHECK(marked[100] == 0);  // before the record's begin()
+  const auto rows = rosin::pick(marked, record.relative_m_s(), {force}, {velocity, force});
+  CHECK(rows.shared.cols() == 1);
+  CHECK(rows.own.cols() == 2);
+  CHECK(rows.target.size() == static_cast<Eigen::Index>(rows.sample.size()));
+  for (std::size_t i = 0; i < rows.sample.size(); ++i) {
+    CHECK(marked[rows.sample[i]] == 1);
+    CHECK(rows.own(static_cast<Eigen::Index>(i), 0) == velocity[rows.sample[i]]);
+  }
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/torsion/torsion_modes.hpp>
+
+#include <doctest/doctest.h>
+
+#include <rosin/simulate/modal_bank.hpp>
+#include <rosin/torsion/torsion_response.hpp>
+
+namespace {
+
+constexpr double one_way = 0.5 / 660.0 / 7;
+const rosin::torsion_modes at(double q, int modes = 60) { return {{0.3 * one_way, 0.7 * one_way}, 0.6125, q, modes}; }
+
+}  // namespace
+
+TEST_CASE("torsion modes: with little loss it is the waveguide, but for a compliance") {
+  const rosin::torsion_waveguide guide{at(1000).delay_s, 0.6125, 1000};
+  const auto modes = at(1000);
+  const double rest = modes.rest_m_N();
+  CHECK(rest > 0);
+  for (const double f : {700.0, 3000.0, 6200.0, 11000.0, 30000.0}) {
+    const auto sum = modes(f) + std::complex<double>(0, 2 * std::numbers::pi * f * rest);
+    CHECK(std::abs(sum - guide(f)) < 0.01 * std::abs(guide(f)) + 1e-4);
+  }
+}
+
+TEST_CASE("torsion modes: at Q = 15 the conventions agree at the first resonance and differ off it") {
+  const auto modes = at(15, 400);
+  const rosin::torsion_waveguide guide{modes.delay_s, 0.6125, 15};
+  const double f1 = 0.5 / one_way;
+  CHECK(std::abs(modes(f1) - guide(f1)) < 0.08 * std::abs(guide(f1)));
+  CHECK(std::arg(modes(0.5 * f1)) - std::arg(guide(0.5 * f1)) > 0.2 / 15);
+}
+
+TEST_CASE("torsion modes: the oscillators that the simulation steps") {
+  const rosin::string_parameters string{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
+  const rosin::modal_rig rig{.string = string, .torsion = {7, 3.5, 15}};
+  const auto list = rosin::torsional_modes(rig, 60 * 660 * 7.0 + 1);
+  REQUIRE(list.size() == 60);
+  const double f = 5600, w = 2 * std::numbers::pi * f;
+  std::complex<double> sum = 0;
+  for (const auto& m : list)
+    sum += std::pow(m.shape(0.3), 2) / m.mass_kg * std::complex<double>(0, w) /
+           std::complex<double>(m.omega_rad_s * m.omega_rad_s - w * w, w * m.omega_rad_s * m.inverse_quality);
+  auto mine = at(15);
+  mine.impedance_Ns_m = 3.5 * string.impedance_Ns_m();
+  CHECK(std::abs(mine(f) - sum) < 1e-9 * std::abs(sum));
+}
