@@ -1,4 +1,4 @@
-// tier: freestanding
+// tier: hosted
 // SPDX-License-Identifier: MIT
 //
 // The same torsion as torsion_response.hpp with another convention of damping: every mode is a viscously damped oscillator,
