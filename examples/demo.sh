@@ -34,6 +34,9 @@ for take in bow-1 bow-2; do
   echo "against the truth, $($rosin compare $demo/$take.csv $demo/truth/$take.csv | grep -v torsion)"
 done
 
-printf '\n%s\n' "Delta: normalised rms difference, 0 to 1. The scale is the strength of the breaking wires, which no recording tells;" \
-  "rosin fit states it as a systematic error. The pages with all figures:"
+cat <<EOF
+
+Delta: normalised rms difference, 0 to 1. The scale is the strength of the breaking wires, which no recording tells;
+rosin fit states it as a systematic error. The pages with all figures:
+EOF
 printf '  %s\n' "$PWD"/$demo/{fit,bow-1,bow-2}.html

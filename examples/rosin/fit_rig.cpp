@@ -94,7 +94,7 @@ void derive_units(const rosin::rig& rig, rig_calibration& c) {
   const double tension = c.impedance_Ns_m->value * 2 * L * f0, per = tension * L * L / (std::numbers::pi * std::numbers::pi);
   const double of_tension = rig.string.impedance_Ns_m ? std::hypot(c.impedance_Ns_m->systematic_sd / c.impedance_Ns_m->value, length)
                                                       : v.tension_N->sd / v.tension_N->value;
-  c.bending_stiffness_Nm2 = doubtful{b * per, c.fit.sd[layout::inharmonicity] * per, b * per * std::hypot(of_tension, 2 * length)};
+  c.bending_stiffness_Nm2 = doubtful{b * per, c.fit.sd[layout::inharmonicity] * per, std::abs(b) * per * std::hypot(of_tension, 2 * length)};
 }
 
 /// The mean over the plucks, with the scatter between them where that is more than each one's error.

@@ -80,12 +80,21 @@ inline std::string pickup_input_problem(std::span<const double> x, double rate_H
   return {};
 }
 
-inline bool believable(const partial& p, double f0) {
-  return std::isfinite(p.frequency_sd) && std::isfinite(p.decay_sd) && p.signal_to_noise > 30 && p.frequency_sd < 0.05 * f0;
+inline bool believable(const partial& p, double expected_Hz, double f0) {
+  return std::isfinite(p.frequency_sd) && std::isfinite(p.decay_sd) && p.signal_to_noise > 30 && p.frequency_sd < 0.05 * f0 &&
+         std::abs(p.frequency_Hz - expected_Hz) < 0.2 * f0;
 }
 
-inline void drop_unbelievable(std::vector<partial_track>& tracks, double f0) {
-  std::erase_if(tracks, [&](const partial_track& t) { return !believable(summary_of(t), f0); });
+/// The tracks of what was found that can be believed.
+inline std::vector<partial_track> pickup_tracks(const baseband_bank& bank, const found_partials& found, double start_s, double stop_s,
+                                                double highest_Hz, double tolerance_Hz) {
+  std::vector<partial_track> tracks;
+  for (const auto& line : found.partials) {
+    if (line.frequency_Hz > highest_Hz) continue;
+    auto t = track_partial(bank, line.number, line.frequency_Hz, tolerance_Hz, start_s, stop_s);
+    if (t && believable(summary_of(*t), line.frequency_Hz, found.fundamental_Hz)) tracks.push_back(std::move(*t));
+  }
+  return tracks;
 }
 
 /// If most partials are double the string itself has two pitches (losses): their relative distance, which no number of partials
@@ -160,42 +169,57 @@ inline void add_warnings(pickup_fit& fit, double nominal_Hz) {
   say(std::abs(fit.glide.relative) > 1e-3, "pitch glide: sharp by " + percent(fit.glide.relative) + " at the start; taken out");
 }
 
-}  // namespace detail
-
-/// Fits a recording of one free ringing. nominal_Hz: the pitch to be expected, within options.search_range.
-[[nodiscard]] inline outcome<pickup_fit> fit_pickup(std::span<const double> signal, double rate_Hz, double nominal_Hz,
-                                                    const pickup_options& options = {}) {
-  const auto refuse = [](const std::string& why) { return outcome<pickup_fit>{failure{why}}; };
-  if (const auto problem = detail::pickup_input_problem(signal, rate_Hz, nominal_Hz, options); !problem.empty()) return refuse(problem);
-  const auto samples = [&](double t) { return static_cast<std::size_t>(t * rate_Hz); };
-  const double duration = static_cast<double>(signal.size()) / rate_Hz, end = std::min(options.end_s, duration);
-  const double least = std::max(0.15, 12 / nominal_Hz);
-  const double begin = options.release_s ? *options.release_s : detail::sound_begins_s(signal.first(samples(end)), rate_Hz);
-  const baseband_bank bank{signal, rate_Hz, std::min(64.0, 0.45 * nominal_Hz)};
-  const double start = begin + std::max(options.skip_s, bank.settling_s()), stop = end - bank.settling_s() / 2;
-  if (!(begin >= 0) || stop - start < least) return refuse("signal: less than " + std::to_string(least) + " s of ringing to look at");
-
-  const auto first = signal.subspan(samples(start), samples(std::min(end - start, std::max(1.0, 50 / nominal_Hz))));
+inline outcome<pickup_fit> fit_stretch(std::span<const double> signal, double rate_Hz, double nominal_Hz, const pickup_options& options,
+                                       const baseband_bank& bank, double start_s, double stop_s) {
+  const double seen_s = std::min(stop_s - start_s, std::max(1.0, 50 / nominal_Hz));
+  const auto first = signal.subspan(static_cast<std::size_t>(start_s * rate_Hz), static_cast<std::size_t>(seen_s * rate_Hz));
   const auto found = find_partials(first, rate_Hz, nominal_Hz, options.search_range, options.partials_at_most);
-  const double f0 = found.fundamental_Hz;
-  const double tolerance = std::min(0.12 * f0, 3.0);
-  std::vector<partial_track> tracks;
-  for (const auto& line : found.partials)
-    if (line.frequency_Hz < options.highest_Hz)
-      if (auto t = track_partial(bank, line.number, line.frequency_Hz, tolerance, start, stop)) tracks.push_back(std::move(*t));
-  detail::drop_unbelievable(tracks, f0);
-  if (tracks.size() < 3) return refuse("partials: fewer than three stand out near multiples of the nominal fundamental");
+  const double f0 = found.fundamental_Hz, tolerance = std::min(0.12 * f0, 3.0);
+  auto tracks = pickup_tracks(bank, found, start_s, stop_s, options.highest_Hz, tolerance);
+  if (tracks.size() < 3) return failure{"partials: fewer than three stand out near multiples of the nominal fundamental"};
 
-  const glide_estimate glide = estimate_glide(tracks);
+  glide_estimate glide = estimate_glide(tracks);
   if (glide.glide.relative != 0) take_out_glide(tracks, glide.glide, 1.5 * tolerance);
   pickup_fit fit;
-  for (const auto& t : tracks) fit.partials.push_back(summary_of(t));
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const partial p = summary_of(tracks[i]);
+    if (!believable(p, partial_frequency(f0, found.inharmonicity, p.number), f0)) continue;
+    fit.partials.push_back(p);
+    shares.push_back(glide.share_Hz[i]);
+  }
+  if (fit.partials.size() < 3) return failure{"partials: fewer than three are damped lines"};
+  const auto steady = std::count_if(fit.partials.begin(), fit.partials.end(), [](const partial& p) { return p.decay_per_s < p.decay_sd; });
+  if (2 * steady > static_cast<std::ptrdiff_t>(fit.partials.size()))
+    return failure{"decay: " + std::to_string(steady) + " of " + std::to_string(fit.partials.size()) +
+                   " partials do not clearly decay; this is no string that rings freely"};
+  glide.share_Hz = shares;
   fit.glide = glide.glide;
   fit.glide_sd = glide.sd;
-  fit.start_s = start;
-  detail::fit_laws(fit, found, glide);
-  if (!std::isfinite(fit.fundamental_sd) || !std::isfinite(fit.inharmonicity_sd)) return refuse("partials: they do not tell pitch and inharmonicity");
-  detail::add_warnings(fit, nominal_Hz);
+  fit.start_s = start_s;
+  fit_laws(fit, found, glide);
+  if (!std::isfinite(fit.fundamental_sd) || !std::isfinite(fit.inharmonicity_sd))
+    return failure{"partials: they do not tell pitch and inharmonicity"};
+  return fit;
+}
+
+}  // namespace detail
+
+/// Fits a recording of one free ringing. nominal_Hz: the pitch to be expected, within options.search_range. A glide is modelled, not
+/// waited for: once it is over, the high partials are gone, and what stands in their places is the pickup's distortion of the low ones.
+[[nodiscard]] inline outcome<pickup_fit> fit_pickup(std::span<const double> signal, double rate_Hz, double nominal_Hz,
+                                                    const pickup_options& options = {}) {
+  if (const auto problem = detail::pickup_input_problem(signal, rate_Hz, nominal_Hz, options); !problem.empty()) return failure{problem};
+  const double end = std::min(options.end_s, static_cast<double>(signal.size()) / rate_Hz), least = std::max(0.15, 12 / nominal_Hz);
+  const auto heard = signal.first(static_cast<std::size_t>(std::max(end, 0.0) * rate_Hz));
+  const failure brief{"signal: less than " + std::to_string(least) + " s of ringing to look at"};
+  if (static_cast<double>(heard.size()) < least * rate_Hz) return brief;
+  const double begin = options.release_s ? *options.release_s : detail::sound_begins_s(heard, rate_Hz);
+  const baseband_bank bank{signal, rate_Hz, std::min(64.0, 0.45 * nominal_Hz)};
+  const double start = begin + std::max(options.skip_s, bank.settling_s()), stop = end - bank.settling_s() / 2;
+  if (!(begin >= 0) || !(stop - start > least)) return brief;
+  outcome<pickup_fit> fit = detail::fit_stretch(signal, rate_Hz, nominal_Hz, options, bank, start, stop);
+  if (fit) detail::add_warnings(*fit, nominal_Hz);
   return fit;
 }
 

@@ -50,6 +50,24 @@ TEST_CASE("pitch, inharmonicity and loss from one channel, from 2 % beside the p
   CHECK(inside >= of - 5);
 }
 
+TEST_CASE("a tone that does not die away is no string that was let go") {
+  std::vector<double> x(66150);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (int n = 1; n <= 20; ++n) x[i] += std::cos(2 * std::numbers::pi * 220.0 * n * static_cast<double>(i) / rate_Hz + n) / n;
+  const auto fit = rosin::fit_pickup(x, rate_Hz, 220);
+  REQUIRE_FALSE(fit);
+  CHECK(fit.error().find("do not clearly decay") != std::string::npos);
+}
+
+TEST_CASE("a glide of half a per cent is taken out, and pitch and inharmonicity keep their error bars") {
+  const auto fit = rosin::fit_pickup(plucked(196, 1e-4, 1e-4, 5, 5e-3), rate_Hz, 197);
+  REQUIRE_MESSAGE(fit, fit.error());
+  CHECK(fit->glide.relative > 1e-3);
+  CHECK(std::abs(fit->fundamental_Hz - 196) < 3 * fit->fundamental_sd);
+  CHECK(fit->fundamental_sd < 0.2);
+  CHECK(std::abs(fit->inharmonicity - 1e-4) < 3 * fit->inharmonicity_sd);
+}
+
 TEST_CASE("noise, silence and what is too short are refused in words") {
   std::mt19937_64 random{1};
   std::normal_distribution<double> gauss;
