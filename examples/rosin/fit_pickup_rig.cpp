@@ -2,6 +2,8 @@
 #include "fit_pickup_rig.hpp"
 #include "progress.hpp"
 
+#include <algorithm>
+
 namespace tool {
 
 namespace {
@@ -87,7 +89,8 @@ rosin::outcome<pickup_calibration> calibrate_pickups(const rosin::rig& rig, prov
     fit_take(rig, take, *read, facts, out);
   }
   if (!out.results.empty()) return out;
-  std::string why = rig.file + ": no pluck that could be fitted";
+  const bool any = std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::pluck && !t.hold_out; });
+  std::string why = rig.file + (any ? ": no pluck that could be fitted" : ": take: none of kind pluck (hold_out aside), so there is nothing to fit");
   for (const auto& line : out.warnings) why += "\n" + line;
   return rosin::failure{why};
 }
