@@ -1,11 +1,12 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// One standard deviation of force and velocity, sample by sample, from three sources that do not know of each other:
+// One standard deviation of force and velocity, sample by sample, from four sources that do not know of each other:
 //
 //     var f(t) = sum_j noise_j^2 sum_n h_j[n]^2            sensor noise through the kernels
 //              + s(t)' C s(t)                              the calibration's covariance, s = d f / d theta
 //              + max(0, var(f_near - f_far) - expected)/4  what the two versions differ by beyond both
+//              + var(f) / (2 Q)^2                          what conventions of damping differ in: neither version shows it
 //
 // These are random: they change the waveform. The common scale (strength of the wires, impedance) is systematic and is kept
 // apart as a relative standard deviation.
@@ -22,7 +23,7 @@ namespace rosin {
 struct reconstruction_uncertainty {
   std::vector<double> force_sd_N, velocity_sd_m_s;
   double force_noise_N = 0, velocity_noise_m_s = 0;    ///< from sensor noise alone
-  double force_model_N = 0, velocity_model_m_s = 0;    ///< from what the two versions disagree in
+  double force_model_N = 0, velocity_model_m_s = 0;    ///< from what the two versions disagree in, and the convention of damping
   double force_scale = 0, velocity_scale = 0;          ///< systematic, relative
 };
 
@@ -50,13 +51,14 @@ namespace detail {
   return std::hypot(noise[0] * combined_taps(kernels, weight, 0).norm(), noise[1] * combined_taps(kernels, weight, 1).norm());
 }
 
-/// rms over the known samples of the difference of two versions.
-[[nodiscard]] inline double rms_difference(const std::vector<double>& a, const std::vector<double>& b, sample_range known) {
+/// rms over the known samples of a + sign b, mean aside.
+[[nodiscard]] inline double rms_of(const std::vector<double>& a, double sign, const std::vector<double>& b, sample_range known) {
   double power = 0, mean = 0;
   const double count = std::max<double>(1, static_cast<double>(known.end - known.begin));
   for (std::size_t i = known.begin; i < known.end; ++i) {
-    power += (a[i] - b[i]) * (a[i] - b[i]);
-    mean += a[i] - b[i];
+    const double x = a[i] + sign * b[i];
+    power += x * x;
+    mean += x;
   }
   return std::sqrt(std::max(0.0, power / count - (mean / count) * (mean / count)));
 }
@@ -81,13 +83,17 @@ template <class Physics = full_physics>
     return v.segment(static_cast<Eigen::Index>(motion.known.begin), static_cast<Eigen::Index>(motion.known.end - motion.known.begin)).mean();
   };
   const Eigen::VectorXd of_difference = (s.difference * c.covariance).cwiseProduct(s.difference).rowwise().sum();
-  const double seen = detail::rms_difference(motion.force_near_N, motion.force_far_N, motion.known);
+  const double seen = detail::rms_of(motion.force_near_N, -1, motion.force_far_N, motion.known);
   const double noise = detail::noise_through(kernels, {1, -1, 0, 0}, noise_N);
   if (motion.known.end > motion.known.begin) {
     // Half of what the versions differ by beyond noise and calibration: each is wrong by about that, either way.
     out.force_model_N = 0.5 * std::sqrt(std::max(0.0, seen * seen - noise * noise - known(of_difference)));
-    const double seen_v = detail::rms_difference(motion.velocity_near_m_s, motion.velocity_far_m_s, motion.known);
+    const double seen_v = detail::rms_of(motion.velocity_near_m_s, -1, motion.velocity_far_m_s, motion.known);
     out.velocity_model_m_s = seen > 0 ? out.force_model_N * seen_v / seen : 0.0;
+    const double turn = c.at.loss.inverse_q(0.5 / (c.at.delay_s[0] + c.at.delay_s[1])) / 2;
+    out.force_model_N = std::hypot(out.force_model_N, turn / 2 * detail::rms_of(motion.force_near_N, 1, motion.force_far_N, motion.known));
+    out.velocity_model_m_s = std::hypot(
+        out.velocity_model_m_s, turn / 2 * detail::rms_of(motion.velocity_near_m_s, 1, motion.velocity_far_m_s, motion.known));
   }
   const auto n = static_cast<std::size_t>(of_force.size());
   out.force_sd_N.resize(n);

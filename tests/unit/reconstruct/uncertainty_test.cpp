@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <numbers>
 #include <random>
 
 TEST_CASE("white noise comes out of the kernels as large as stated") {
@@ -34,4 +35,25 @@ TEST_CASE("white noise comes out of the kernels as large as stated") {
   CHECK(sure.force_scale == 0.01);
   CHECK(sure.velocity_scale == doctest::Approx(std::hypot(0.01, 0.02)));
   CHECK(sure.force_sd_N.size() == near.size());
+}
+
+TEST_CASE("what the convention of damping leaves open is counted, although both versions agree") {
+  rosin::calibration c;
+  c.at = rosin::contact_at({0.314, 72.5, 659.69, 4.7e-5, {500, 0, 0}}, 0.2);
+  constexpr std::size_t n = 4000;
+  rosin::bow_motion<double> motion;
+  motion.known = {0, n};
+  for (std::size_t i = 0; i < n; ++i) {
+    const double wave = std::sin(2 * std::numbers::pi * static_cast<double>(i) / 100);
+    motion.force_near_N.push_back(0.3 + 0.2 * wave);
+    motion.velocity_near_m_s.push_back(0.4 * wave);
+  }
+  motion.force_far_N = motion.force_near_N;
+  motion.velocity_far_m_s = motion.velocity_near_m_s;
+  rosin::reconstruction_sensitivity s;
+  for (auto* part : {&s.force, &s.velocity, &s.difference}) part->setZero(n, Eigen::NoChange);
+  const auto sure = rosin::uncertainty(c, motion, s, {0, 0}, {20e3, 45e3}, 128e3);
+  CHECK(sure.force_model_N == doctest::Approx(0.2 / std::numbers::sqrt2 / (2 * 500)).epsilon(1e-6));
+  CHECK(sure.velocity_model_m_s == doctest::Approx(0.4 / std::numbers::sqrt2 / (2 * 500)).epsilon(1e-6));
+  CHECK(sure.force_sd_N[n / 2] == doctest::Approx(sure.force_model_N));
 }
