@@ -33,10 +33,10 @@ TEST_CASE("the whole chain on the paper's string: at most 0.006 against the trut
       CAPTURE(r.take);
       CHECK(r.made.whole.force < 0.006);
       CHECK(std::abs(r.scale_error) < 3 * r.scale_sd);
-      CHECK(r.force_inside > 0.90);
-      CHECK(r.velocity_inside > 0.88);
-      CHECK(r.force_width < 1.5);
-      CHECK(r.velocity_width < 1.5);
+      CHECK(r.force_inside > 0.93);
+      CHECK(r.velocity_inside > 0.93);
+      CHECK(r.force_width < 1.1);
+      CHECK(r.velocity_width < 1.1);
     }
   }
 }
@@ -50,10 +50,10 @@ TEST_CASE("the same on 24 random rigs, every take of them") {
     CAPTURE(r.seed);
     CAPTURE(r.take);
     CHECK(r.made.whole.force < 0.006);
-    CHECK(r.force_inside > 0.90);
-    CHECK(r.velocity_inside > 0.88);
-    CHECK(r.force_width < 1.5);
-    CHECK(r.velocity_width < 1.5);
+    CHECK(r.force_inside > 0.93);
+    CHECK(r.velocity_inside > 0.93);
+    CHECK(r.force_width < 1.1);
+    CHECK(r.velocity_width < 1.1);
     scale_outside += std::abs(r.scale_error) > 2 * r.scale_sd ? 1 : 0;
   }
   CHECK(scale_outside <= 6);  // two takes a rig share one scale
