@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cxx=${CXX:-g++} runs=${RUNS:-2}
-read -ra flags <<<"${FLAGS:--isystem /usr/include/eigen3 -isystem /usr/include/gemmi}"
+read -ra flags <<<"${FLAGS:--isystem /usr/include/eigen3 -isystem /usr/include/gemmi/third_party}"
 compile=("$cxx" -std=c++20 -O0 -c -o /dev/null -x c++ -I include "${flags[@]}" -)
 
 if [ $# -gt 0 ]; then headers=("$@")

@@ -173,7 +173,7 @@ rosin::outcome<calibration_set> read_calibration(const std::string& path) {
       return rosin::failure{path + ": delays, gains and Q have to be positive, and one position at least has to be there"};
     return out;
   } catch (const json::exception& error) {
-    return rosin::failure{path + ": " + error.what()};
+    return rosin::failure{path + ": " + error.what() + ": a number that is needed is not there"};
   }
 }
 

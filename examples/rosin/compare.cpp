@@ -80,8 +80,19 @@ compared compare_columns(const std::string& name, const std::vector<double>& res
   return out;
 }
 
-/// The sampling rate, if both tables go through the same instants.
+/// The take that the comments of a table name; empty if none.
+std::string take_of(const rosin::table& t) {
+  for (const std::string& line : t.comments)
+    for (const std::string_view start : {"truth of take ", "take "})
+      if (line.starts_with(start)) return line.substr(start.size(), line.rfind(", ") - start.size());
+  return {};
+}
+
+/// The sampling rate, if both tables go through the same instants of one take.
 rosin::outcome<double> common_rate(const options& given, const rosin::table& result, const rosin::table& truth) {
+  const std::string one = take_of(result), other = take_of(truth);
+  if (!one.empty() && !other.empty() && one != other)
+    return rosin::failure{given.result + " is of take " + one + ", " + given.truth + " of take " + other + ": not the same take"};
   const auto* a = result.find("time_s");
   const auto* b = truth.find("time_s");
   if (a == nullptr) return rosin::failure{given.result + ": has no column time_s"};

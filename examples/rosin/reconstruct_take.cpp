@@ -73,13 +73,17 @@ declared_end reflection_of(const std::optional<rosin::termination>& end, double 
   }};
 }
 
-rosin::outcome<rosin::band> band_of(const take_options& how, double rate_Hz) {
+/// Filters are as long as the band's edge is narrow: one narrower than the fundamental would outlast the string's periods.
+rosin::outcome<rosin::band> band_of(const take_options& how, double rate_Hz, double fundamental_Hz) {
   rosin::band limits{0.30 * rate_Hz, 0.45 * rate_Hz};
   if (how.pass_Hz > 0) limits = {how.pass_Hz, how.stop_Hz > 0 ? how.stop_Hz : std::min(1.5 * how.pass_Hz, 0.5 * rate_Hz)};
   else if (how.stop_Hz > 0) limits = {how.stop_Hz / 1.5, how.stop_Hz};
-  if (limits.pass_Hz < limits.stop_Hz && limits.stop_Hz <= 0.5 * rate_Hz) return limits;
-  return rosin::failure{"--pass " + figure(limits.pass_Hz, "%.0f") + " --stop " + figure(limits.stop_Hz, "%.0f") +
-                        ": pass has to be below stop, and stop not above half the sampling rate of " + figure(rate_Hz, "%.0f") + " Hz"};
+  const std::string given = "--pass " + figure(limits.pass_Hz, "%.0f") + " --stop " + figure(limits.stop_Hz, "%.0f") + ": ";
+  if (!(limits.pass_Hz < limits.stop_Hz && limits.stop_Hz <= 0.5 * rate_Hz))
+    return rosin::failure{given + "pass has to be below stop, and stop not above half the sampling rate of " + figure(rate_Hz, "%.0f") + " Hz"};
+  if (limits.pass_Hz < fundamental_Hz || limits.stop_Hz - limits.pass_Hz < fundamental_Hz)
+    return rosin::failure{given + "pass, and the distance from pass to stop, have to be at least the fundamental, " + figure(fundamental_Hz, "%.0f") + " Hz"};
+  return limits;
 }
 
 process_input input_of(const rosin::rig& rig, const checked_take& read, take_reconstruction& r) {
@@ -256,7 +260,7 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   r.rig = rig.file, r.take = take.name, r.title = rig.title.value_or(rig.file);
   r.rate_Hz = read.signals.sample_rate_Hz, r.how = how, r.calibration = calibration;
   r.sampled_s = static_cast<double>(read.signals.frames()) / r.rate_Hz;
-  const auto limits = band_of(how, r.rate_Hz);
+  const auto limits = band_of(how, r.rate_Hz, rig.string.fundamental_Hz);
   if (!limits) return rosin::failure{limits.error()};
   r.limits = *limits;
   const auto position = rig.position_of(take);

@@ -79,6 +79,8 @@ expect 2 reconstruct rig --take bow-2
 says 'no take "bow-2"; bowed takes: bow-1'
 expect 2 reconstruct rig --take pluck-1
 says "of kind pluck"
+expect 2 reconstruct rig --take bow-1 --pass 20 --stop 40
+says "--pass 20 --stop 40: pass, and the distance from pass to stop, have to be at least the fundamental"
 expect 2 reconstruct rig --take bow-1 --pass 20000 --stop 30000
 says "half the sampling rate"
 expect 2 reconstruct rig --take bow-1 --calibration rig/rig.toml

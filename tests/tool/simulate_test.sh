@@ -239,5 +239,8 @@ expect 0 compare scaled.csv made-truth/bow-1.csv --json
 says '"delta_after_scale": ' '"pass_Hz": 19200'
 expect 2 compare made-truth/bow-1.csv elastic-truth/b.csv
 says "not the same take"
+sed 's/^# truth of take bow-1/# truth of take bow-2/' made-truth/bow-1.csv >other-take.csv
+expect 2 compare other-take.csv made-truth/bow-1.csv
+says "other-take.csv is of take bow-2, made-truth/bow-1.csv of take bow-1: not the same take"
 expect 2 compare made-truth/truth.json made-truth/bow-1.csv
 finish
