@@ -121,7 +121,7 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
   result.misfit = found.misfit;
   result.residual_ratio = found.residual_ratio;
   const normal_equations end = problem.linearise(result.value);
-  const Eigen::MatrixXd inverse = result.layout.invert(end.hessian);
+  const Eigen::MatrixXd inverse = invert_free(result.layout, end.hessian);
   result.covariance = inverse * (end.prior + found.inflation() * end.scatter) * inverse;
   result.sd = result.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   result.unidentified = unidentified(end.hessian - end.prior, result.layout);

@@ -164,20 +164,6 @@ public:
     return ok;
   }
 
-  /// Inverse over the free parameters; rows and columns of the fixed ones are zero.
-  [[nodiscard]] Eigen::MatrixXd invert(const Eigen::MatrixXd& hessian) const {
-    const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    Eigen::MatrixXd inverse = scale.asDiagonal() *
-                              Eigen::MatrixXd((scale.asDiagonal() * hessian * scale.asDiagonal())
-                                                  .completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
-    for (Eigen::Index p = 0; p < size(); ++p)
-      if (!is_free(p)) {
-        inverse.row(p).setZero();
-        inverse.col(p).setZero();
-      }
-    return inverse;
-  }
-
 private:
   pluck_options options_{};
   std::vector<double> positions_;
@@ -205,6 +191,20 @@ inline void pluck_layout::sense(std::vector<damped_line>& lines, const Eigen::Ve
     else slow.residue[c] = (offset * std::exp(-corner * released) - at_release) * std::exp(-corner * (begin_s - released));
     lines.push_back(slow);
   }
+}
+
+/// Inverse over the free parameters; rows and columns of the fixed ones are zero.
+template <class Layout>
+[[nodiscard]] Eigen::MatrixXd invert_free(const Layout& layout, const Eigen::MatrixXd& hessian) {
+  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  Eigen::MatrixXd inverse = scale.asDiagonal() * Eigen::MatrixXd(scaled.completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
+  for (Eigen::Index p = 0; p < layout.size(); ++p)
+    if (!layout.is_free(p)) {
+      inverse.row(p).setZero();
+      inverse.col(p).setZero();
+    }
+  return inverse;
 }
 
 }  // namespace rosin

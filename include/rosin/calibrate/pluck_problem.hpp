@@ -57,6 +57,7 @@ struct normal_equations {
 /// What the residual says of the model.
 struct assessment {
   std::array<double, 2> noise{};
+  std::array<double, 2> power{}, samples{};  ///< of the residual, channel by channel; of white noise it would be noise^2 samples
   double misfit = 1, dimensions = 1;
   std::vector<double> residual_ratio;
   /// Variance is inflated by lack of fit only where noise does not explain it.
@@ -86,26 +87,41 @@ public:
     }
   }
 
+  /// The recording in one stretch, filtered, and from when on.
+  struct stretch {
+    double begin_s = 0;
+    std::array<Eigen::VectorXd, 2> data;
+    [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(data[0].size()); }
+  };
+  /// J^T r per line, the residual's power, and the residual itself where asked for.
+  struct projection {
+    std::array<Eigen::MatrixXd, 2> onto_lines;  // N x 4: Re z, Im z, t Re z, t Im z
+    std::array<double, 2> power{}, signal{};
+  };
+
   [[nodiscard]] double highest_Hz() const { return limits_.stop_Hz; }
+  [[nodiscard]] const band& limits() const { return limits_; }
+  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] int partials() const { return partials_; }
+  [[nodiscard]] std::array<double, 2> noise() const { return noise_; }
+  [[nodiscard]] std::size_t takes() const { return takes_.size(); }
+  [[nodiscard]] double rate_Hz(std::size_t take) const { return takes_[take].rate_Hz; }
+  [[nodiscard]] const stretch& part(std::size_t take, std::size_t part) const { return takes_[take].part[part]; }
+  [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part) const {
+    return model_.lines(v, take, part, takes_[take].part[part].begin_s, limits_, partials_);
+  }
+  [[nodiscard]] projection project(const stretch& s, double rate_Hz, const std::vector<damped_line>& lines) const;
+  [[nodiscard]] std::array<Eigen::MatrixXd, 2> sensitivities(const Eigen::VectorXd& v, std::size_t take, std::size_t part,
+                                                            const std::vector<damped_line>& at) const;
   void set_noise(std::array<double, 2> noise) { noise_ = noise; }
 
   [[nodiscard]] normal_equations linearise(const Eigen::VectorXd& value) const;
   [[nodiscard]] assessment assess(const Eigen::VectorXd& value) const;
 
 private:
-  struct stretch {
-    double begin_s = 0;
-    std::array<Eigen::VectorXd, 2> data;
-    [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(data[0].size()); }
-  };
   struct prepared {
     double rate_Hz;
     std::array<stretch, 2> part;  // before and after the release
-  };
-  /// J^T r per line, the residual's power, and the residual itself where asked for.
-  struct projection {
-    std::array<Eigen::MatrixXd, 2> onto_lines;  // N x 4: Re z, Im z, t Re z, t Im z
-    std::array<double, 2> power{}, signal{};
   };
 
   static stretch cut(const pluck_take& take, const fir& kernel, int begin, int end) {
@@ -121,13 +137,6 @@ private:
     }
     return s;
   }
-
-  [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part) const {
-    return model_.lines(v, take, part, takes_[take].part[part].begin_s, limits_, partials_);
-  }
-  [[nodiscard]] projection project(const stretch& s, double rate_Hz, const std::vector<damped_line>& lines) const;
-  [[nodiscard]] std::array<Eigen::MatrixXd, 2> sensitivities(const Eigen::VectorXd& v, std::size_t take, std::size_t part,
-                                                            const std::vector<damped_line>& at) const;
 
   Model model_;
   std::vector<pluck_layout::knowledge> prior_;
@@ -244,7 +253,8 @@ assessment line_problem<Model>::assess(const Eigen::VectorXd& v) const {
   for (int i = 0; i < 1000; ++i) mean_square += std::pow(limits_(takes_.front().rate_Hz * (i + 0.5) / 2000), 2) / 1000;
   assessment out;
   double at_lines = 0, expected = 0, dimensions = 0;
-  std::array<double, 2> power{}, samples{}, captured{}, used{};
+  std::array<double, 2>&power = out.power, &samples = out.samples;
+  std::array<double, 2> captured{}, used{};
   for (std::size_t t = 0; t < takes_.size(); ++t) {
     double residual = 0, signal = 0;
     for (std::size_t part = 0; part < 2; ++part) {

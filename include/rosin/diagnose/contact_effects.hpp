@@ -1,0 +1,121 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Which effect of the contact do bowed takes show that the model does not own up to? All that the catalogue knows of the contact is
+// tried on the reconstructed force and motion: what shows while the string sticks (contact_stick_effects.hpp), what shows while
+// it slips (contact_slip_effects.hpp), what shows in that both ends disagree about the point of contact (contact_width.hpp).
+// Effects of one kind are measured on the same samples, counted as the best among them shows how many are independent. The
+// contact is as declared where nothing gains clearly, on all takes and on takes predicted from the others. For a
+// second effect: include() the first in the model, and ask again.
+//
+// If sensors or string are not as the calibration holds, the reconstruction is wrong and its two versions disagree. That disagreement
+// is taken as a floor of what can be told here; set right first what is wrong there.
+//
+#pragma once
+
+#include <rosin/diagnose/contact_slip_effects.hpp>
+#include <rosin/diagnose/contact_stick_effects.hpp>
+#include <rosin/diagnose/contact_width.hpp>
+
+namespace rosin {
+
+struct contact_findings {
+  std::vector<contact_hypothesis> hypotheses;  ///< best first
+  double stick_fluctuation = 0, stick_floor = 0;      ///< of the model as declared, and what the reconstruction leaves uncertain; of the rod's speed
+  double friction_residual = 0, friction_floor = 0;   ///< the same of the law, as a coefficient of friction
+  double independent = 0;                             ///< independent samples that stick
+  double threshold = 0;                               ///< gains below it are what imperfect models of a contact as declared gain
+  bool as_declared = true;
+  std::vector<std::string> warnings;
+};
+
+namespace detail {
+
+/// The same independence for all hypotheses on the same samples: that of the likeliest.
+inline void common_share(std::vector<contact_hypothesis>& hypotheses, const std::string& statistic) {
+  const contact_hypothesis* best = nullptr;
+  for (const auto& h : hypotheses)
+    if (h.statistic == statistic && (best == nullptr || h.density > best->density)) best = &h;
+  if (best == nullptr) return;
+  const double share = best->share;
+  for (auto& h : hypotheses)
+    if (h.statistic == statistic) h.gain = share * h.density, h.held_out_gain = share * h.held_out_density, h.share = share;
+}
+
+[[nodiscard]] inline contact_hypothesis stick_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes, const std::string& effect) {
+  if (effect == "torsion") return torsion_hypothesis(bench);
+  if (effect == "rod-resonance") return rod_hypothesis(bench);
+  if (effect == "elasto-plastic-friction") return bristle_hypothesis(bench);
+  if (effect == "creep") return creep_hypothesis(bench, takes);
+  return speed_ripple_hypothesis(bench);
+}
+
+/// The likeliest effect once more with the other convention of torsional damping, which the effect itself may have hidden.
+inline void reconsider_damping(stick_bench& bench, const std::vector<contact_take>& takes, std::vector<contact_hypothesis>& hypotheses) {
+  const auto best = std::max_element(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.density < b.density; });
+  if (best == hypotheses.end() || best->gain < 100 || best->effect == "torsion" || !bench.model().torsion) return;
+  const double before = bench.fit().density, held_out = bench.fit().held_out;
+  bench.use_damping(bench.damping() == torsion_damping::constant_q ? torsion_damping::viscous_modes : torsion_damping::constant_q);
+  auto other = stick_hypothesis(bench, takes, best->effect);
+  other.density += bench.fit().density - before;
+  other.held_out_density += bench.fit().held_out - held_out;
+  if (other.density > best->density) *best = other;
+}
+
+inline void add_stick_hypotheses(stick_bench& bench, const std::vector<contact_take>& takes, contact_findings& out) {
+  if (!bench.usable()) {
+    out.warnings.emplace_back("the string hardly sticks to the rod, or is not known to: torsion, rod and steadiness of speed cannot be told");
+    return;
+  }
+  const auto& known = bench.model().included;
+  for (const char* effect : {"torsion", "rod-resonance", "elasto-plastic-friction", "creep", "speed-ripple"})
+    if (std::find(known.begin(), known.end(), effect) == known.end()) out.hypotheses.push_back(stick_hypothesis(bench, takes, effect));
+  out.stick_fluctuation = bench.fit().solution.scale / bench.speed_m_s();
+  out.stick_floor = bench.floor_m_s() / bench.speed_m_s();
+  out.independent = bench.independent();
+  reconsider_damping(bench, takes, out.hypotheses);
+  common_share(out.hypotheses, "stick-fluctuation");
+}
+
+inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_take>& takes, contact_findings& out) {
+  const slip_bench bench(sticks, takes);
+  if (!bench.usable()) {
+    out.warnings.emplace_back("too few samples slip, or the normal force is unknown: the law of friction cannot be told");
+    return;
+  }
+  const auto& known = sticks.model().included;
+  const auto is_known = [&](const char* effect) { return std::find(known.begin(), known.end(), effect) != known.end(); };
+  if (!is_known("normal-force-ripple")) out.hypotheses.push_back(normal_ripple_hypothesis(bench));
+  if (!is_known("thermal-friction")) out.hypotheses.push_back(law_hypothesis(bench));
+  out.friction_residual = bench.declared().residual();
+  out.friction_floor = bench.floor();
+  common_share(out.hypotheses, "friction-residual");
+}
+
+}  // namespace detail
+
+/// All hypotheses about the contact, best first. Takes without a rod speed, or of fewer than 500 known samples, are left out.
+[[nodiscard]] inline contact_findings contact_hypotheses(const std::vector<contact_take>& all, const contact_model& model) {
+  contact_findings out;
+  std::vector<contact_take> takes;
+  for (const auto& t : all) {
+    std::size_t known = 0;
+    for (std::size_t i = 0; i < std::min(t.force_N.size(), t.velocity_m_s.size()); ++i) known += std::isfinite(t.force_N[i]) && std::isfinite(t.velocity_m_s[i]) ? 1U : 0U;
+    if (known >= 500 && t.rod_speed_m_s != 0 && t.rate_Hz > 0 && t.impedance_Ns_m > 0) takes.push_back(t);
+    else out.warnings.push_back(t.name + ": left out: too short, or its rod's speed or the string's impedance is unknown");
+  }
+  if (takes.empty()) return out;
+  stick_bench sticks(takes, model);
+  const auto& known = model.included;
+  if (std::find(known.begin(), known.end(), "finite-contact-width") == known.end())
+    if (auto width = width_hypothesis(sticks, takes)) out.hypotheses.push_back(*std::move(width));
+  detail::add_stick_hypotheses(sticks, takes, out);
+  detail::add_slip_hypotheses(sticks, takes, out);
+  std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+  out.threshold = std::max(40.0, 0.04 * out.independent);
+  for (const auto& h : out.hypotheses)
+    if (h.decided && h.gain > out.threshold && h.held_out_gain > out.threshold / 2) out.as_declared = false;
+  return out;
+}
+
+}  // namespace rosin

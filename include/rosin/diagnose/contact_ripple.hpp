@@ -1,0 +1,177 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// One tone in what a model leaves over, at samples that come in patches (only while it sticks, or only while it slips): its
+// frequency is common to all takes, size and phase are each take's own. Scanned by least squares on the patches themselves, since a
+// periodogram of patches with zeros between would show the patches. Whether it is real is asked by prediction: size and phase
+// from one half of each take have to explain the other.
+//
+#pragma once
+
+#include <rosin/diagnose/contact_stick.hpp>
+
+#include <complex>
+
+namespace rosin {
+
+/// Residuals of one take at ascending samples; `carrier` is what the tone multiplies there (rod speed, friction).
+struct tone_rows {
+  Eigen::VectorXd residual, carrier, weight;
+  std::vector<std::size_t> sample;
+  double rate_Hz = 0;
+};
+
+/// residual = carrier * relative * sin(2 pi f t + phase), in each take.
+struct tone_fit {
+  double frequency_Hz = 0, frequency_sd_Hz = 0;
+  std::vector<std::complex<double>> relative;  ///< of each take: sine part, cosine part
+  double size = 0, size_sd = 0;                ///< of `relative`, over all takes
+  double explained = 0;                        ///< sum of weighted squares that go
+};
+
+namespace detail {
+
+struct tone_sums {
+  double ss = 0, sc = 0, cc = 0, sr = 0, cr = 0;
+  [[nodiscard]] std::complex<double> solve() const noexcept {
+    const double det = ss * cc - sc * sc;
+    if (!(det > 1e-9 * ss * cc)) return 0;
+    return {(cc * sr - sc * cr) / det, (ss * cr - sc * sr) / det};
+  }
+};
+
+[[nodiscard]] inline tone_sums sums_at(const tone_rows& r, double f, std::size_t from, std::size_t to) {
+  tone_sums s;
+  const double w = 2 * std::numbers::pi * f / r.rate_Hz;
+  const std::complex<double> turn = std::polar(1.0, w);
+  std::complex<double> z = 1;
+  std::size_t at = 0;
+  for (std::size_t i = from; i < to; ++i) {
+    const std::size_t n = r.sample[i];
+    if (i == from || n - at > 16) z = std::polar(1.0, w * static_cast<double>(n));
+    else for (; at < n; ++at) z *= turn;
+    at = n;
+    const auto k = static_cast<Eigen::Index>(i);
+    const double c = r.weight[k] * r.carrier[k], x = c * z.imag(), y = c * z.real(), v = r.weight[k] * r.residual[k];
+    s.ss += x * x, s.sc += x * y, s.cc += y * y, s.sr += x * v, s.cr += y * v;
+  }
+  return s;
+}
+
+[[nodiscard]] inline double explained_at(const std::vector<tone_rows>& takes, double f) {
+  double sum = 0;
+  for (const auto& t : takes) {
+    const auto s = sums_at(t, f, 0, t.sample.size());
+    const auto a = s.solve();
+    sum += a.real() * s.sr + a.imag() * s.cr;
+  }
+  return sum;
+}
+
+}  // namespace detail
+
+/// The tone that explains most, from what fits twice into the record up to `highest_Hz`.
+[[nodiscard]] inline tone_fit find_tone(const std::vector<tone_rows>& takes, double highest_Hz = 900) {
+  double length = 0;
+  for (const auto& t : takes)
+    if (!t.sample.empty()) length = std::max(length, static_cast<double>(t.sample.back() - t.sample.front()) / t.rate_Hz);
+  tone_fit best;
+  if (!(length > 0)) return best;
+  const double step = 0.25 / length;
+  for (double f = 2 / length; f < highest_Hz; f += step)
+    if (const double e = detail::explained_at(takes, f); e > best.explained) best.explained = e, best.frequency_Hz = f;
+  for (double width = step / 2; width > step / 500; width /= 2)
+    for (const double f : {best.frequency_Hz - width, best.frequency_Hz + width})
+      if (const double e = detail::explained_at(takes, f); e > best.explained) best.explained = e, best.frequency_Hz = f;
+  double weights = 0, sum = 0;
+  for (const auto& t : takes) {
+    const auto s = detail::sums_at(t, best.frequency_Hz, 0, t.sample.size());
+    best.relative.push_back(s.solve());
+    const double w = s.ss + s.cc;
+    weights += w, sum += w * std::abs(best.relative.back());
+  }
+  best.size = weights > 0 ? sum / weights : 0;
+  return best;
+}
+
+/// Squares that the tone explains in each half of each take with size and phase from the other, less what it spoils.
+[[nodiscard]] inline double tone_prediction(const std::vector<tone_rows>& takes, double f) {
+  double sum = 0;
+  for (const auto& t : takes)
+    for (const bool second : {false, true}) {
+      const std::size_t half = t.sample.size() / 2, n = t.sample.size();
+      const auto here = detail::sums_at(t, f, second ? half : 0, second ? n : half), there = detail::sums_at(t, f, second ? 0 : half, second ? half : n);
+      const auto a = there.solve();
+      sum += 2 * (a.real() * here.sr + a.imag() * here.cr) - (a.real() * a.real() * here.ss + 2 * a.real() * a.imag() * here.sc + a.imag() * a.imag() * here.cc);
+    }
+  return sum;
+}
+
+namespace detail {
+
+/// Gains of a Student likelihood from weighted squares: what a tone takes from the residual's power, at the final weights.
+inline void finish_tone(const std::vector<tone_rows>& takes, double scale, double share, tone_fit& tone, contact_hypothesis& h) {
+  double rows = 0, power = 0, length = 0;
+  for (const auto& t : takes) {
+    rows += static_cast<double>(t.sample.size());
+    power += t.weight.cwiseProduct(t.residual).squaredNorm();
+    if (!t.sample.empty()) length = std::max(length, static_cast<double>(t.sample.back() - t.sample.front()) / t.rate_Hz);
+  }
+  const double floor = rows * scale * scale * 1e-6, left = std::max(power - tone.explained, floor), predicted = std::max(power - tone_prediction(takes, tone.frequency_Hz), floor);
+  h.gain = 0.5 * share * rows * std::log(power / left);
+  h.held_out_gain = 0.5 * share * rows * std::log(power / predicted);
+  const double noise = std::sqrt(left / std::max(1.0, rows)), effective = std::max(1.0, share * rows);
+  double carrier = 0;
+  for (const auto& t : takes) carrier += t.weight.cwiseProduct(t.carrier).squaredNorm();
+  carrier = std::sqrt(carrier / std::max(1.0, rows));
+  tone.size_sd = std::sqrt(2 / effective) * noise / std::max(1e-12, carrier);
+  tone.frequency_sd_Hz = std::sqrt(6 / effective) * noise / (std::numbers::pi * std::max(1e-9, length) * std::max(1e-12, tone.size * carrier));
+  h.parameters = {{"frequency_Hz", tone.frequency_Hz, tone.frequency_sd_Hz}, {"relative", tone.size, tone.size_sd}};
+  h.free_parameters = 1 + 2 * static_cast<int>(takes.size());
+  h.decided = tone.size > 4 * tone.size_sd;
+}
+
+}  // namespace detail
+
+/// Three quarters of the lowest pitch: what repeats with the string itself is its own doing.
+[[nodiscard]] inline double below_the_pitch(const std::vector<stick_record>& records) {
+  double longest = 1e-4;
+  for (const auto& r : records) longest = std::max(longest, r.take().delay_s[0] + r.take().delay_s[1]);
+  return 0.75 * 0.5 / longest;
+}
+
+/// The rod's speed is not steady: a tone in the surface's velocity while it sticks, whatever the force.
+[[nodiscard]] inline contact_hypothesis speed_ripple_hypothesis(stick_bench& bench) {
+  contact_hypothesis h{.effect = "speed-ripple"};
+  h.statistic = "stick-fluctuation";
+  const auto& s = bench.fit().solution;
+  std::vector<tone_rows> takes;
+  for (std::size_t t = 0; t < bench.declared().rows.size(); ++t) {
+    const auto& rows = bench.declared().rows[t];
+    const double speed = bench.records()[t].take().rod_speed_m_s, nu = detail::student_freedom;
+    takes.push_back({s.residual[t], Eigen::VectorXd::Constant(rows.target.size(), speed),
+                     ((s.residual[t].array().square() / (s.scale * s.scale) + nu).inverse() * (nu + 1)).sqrt().matrix(), rows.sample, bench.records()[t].take().rate_Hz});
+  }
+  auto tone = find_tone(takes, below_the_pitch(bench.records()));
+  stick_design d = bench.declared();
+  for (std::size_t t = 0; t < takes.size(); ++t)
+    for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
+      std::vector<double> wave(bench.records()[t].size());
+      for (std::size_t i = 0; i < wave.size(); ++i)
+        wave[i] = bench.records()[t].take().rod_speed_m_s * std::sin(2 * std::numbers::pi * tone.frequency_Hz * static_cast<double>(i) / takes[t].rate_Hz + turn);
+      d.add_own(t, wave);
+    }
+  const auto fit = fit_design(d, bench.floor_m_s());
+  detail::finish_tone(takes, s.scale, fit.share, tone, h);
+  const double predicted = h.held_out_gain;
+  h.gain = bench.gains(fit)[0];
+  h.held_out_gain = std::min(predicted, bench.gains(fit)[1]);
+  h.share = fit.share, h.density = h.gain / fit.share, h.held_out_density = h.held_out_gain / fit.share;
+  double size = 0;
+  for (const auto& own : fit.solution.own) size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
+  h.parameters[1].value = size;
+  h.fluctuation = fit.solution.scale / bench.speed_m_s();
+  return h;
+}
+
+}  // namespace rosin

@@ -1,0 +1,131 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Effects that show while the string slips. The declared model says: force = normal force times a curve of the slip speed, the same in
+// all takes, whatever the curve. Against it:
+//
+//     normal-force-ripple   N (1 + relative sin(2 pi frequency t + phase)): a tone in force / curve
+//     thermal-friction      the force follows a temperature that the slips so far have left
+//
+// or the other way about, where the declared law is thermal. (Specification sheet, 6.1, items 32 and 33.)
+//
+#pragma once
+
+#include <rosin/diagnose/contact_ripple.hpp>
+#include <rosin/diagnose/friction_laws.hpp>
+
+namespace rosin {
+
+/// Slips of all takes, and the law as declared fitted to them.
+class slip_bench {
+public:
+  /// `known_mu`: how well a coefficient of friction is known from the reconstruction, at best.
+  slip_bench(stick_bench& sticks, const std::vector<contact_take>& takes) : records_{slip_records(sticks, takes)}, pitch_{below_the_pitch(sticks.records())} {
+    std::size_t samples = 0;
+    for (std::size_t t = 0; t < records_.size(); ++t) {
+      samples += records_[t].slips.sample.size();
+      floor_ = std::max({floor_, 0.003, 0.6 * takes[t].force_sd_N / takes[t].normal_force_N});
+    }
+    usable_ = samples > 400 && std::all_of(records_.begin(), records_.end(), [](const auto& r) { return r.slips.sample.size() > 100 && r.normal_N > 0; });
+    if (!usable_) return;
+    declared_ = sticks.model().law == contact_law::thermal ? fit_thermal(records_, floor_) : fit_velocity_curve(records_, floor_);
+    if (sticks.model().normal_ripple_Hz) include_ripple(*sticks.model().normal_ripple_Hz);
+  }
+
+  [[nodiscard]] bool usable() const noexcept { return usable_; }
+  [[nodiscard]] double floor() const noexcept { return floor_; }
+  [[nodiscard]] const std::vector<slip_record>& records() const noexcept { return records_; }
+  [[nodiscard]] const law_fit& declared() const noexcept { return declared_; }
+  [[nodiscard]] double pitch_Hz() const noexcept { return pitch_; }
+
+  /// Friction as the declared law has it, at the rows of a take.
+  [[nodiscard]] Eigen::VectorXd predicted(std::size_t take) const {
+    return declared_.design.rows[take].target - declared_.fit.solution.residual[take];
+  }
+  /// Adds a tone of N to a design of the declared law.
+  void add_tone(stick_design& d, double f) const {
+    for (std::size_t t = 0; t < records_.size(); ++t)
+      for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
+        auto& rows = d.rows[t];
+        const Eigen::VectorXd mu = predicted(t);
+        const Eigen::Index c = rows.own.cols();
+        rows.own.conservativeResize(rows.target.size(), c + 1);
+        for (Eigen::Index i = 0; i < mu.size(); ++i)
+          rows.own(i, c) = mu[i] * std::sin(2 * std::numbers::pi * f * static_cast<double>(rows.sample[static_cast<std::size_t>(i)]) / records_[t].rate_Hz + turn);
+      }
+  }
+
+private:
+  void include_ripple(double f) {
+    stick_design d = declared_.design;
+    add_tone(d, f);
+    declared_.fit = fit_design(d, floor_);
+    declared_.design = std::move(d);
+  }
+
+  std::vector<slip_record> records_;
+  double pitch_ = 0, floor_ = 0;
+  bool usable_ = false;
+  law_fit declared_{};
+};
+
+namespace detail {
+
+inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, contact_hypothesis& h) {
+  h.share = fit.share;
+  h.density = fit.density - bench.declared().fit.density;
+  h.held_out_density = fit.held_out - bench.declared().fit.held_out;
+  h.gain = h.share * h.density;
+  h.held_out_gain = h.share * h.held_out_density;
+  h.fluctuation = fit.solution.scale;
+  h.statistic = "friction-residual";
+}
+
+}  // namespace detail
+
+[[nodiscard]] inline contact_hypothesis normal_ripple_hypothesis(const slip_bench& bench) {
+  contact_hypothesis h{.effect = "normal-force-ripple"};
+  h.statistic = "friction-residual";
+  const auto& s = bench.declared().fit.solution;
+  std::vector<tone_rows> takes;
+  for (std::size_t t = 0; t < bench.records().size(); ++t)
+    takes.push_back({s.residual[t], bench.predicted(t),
+                     ((s.residual[t].array().square() / (s.scale * s.scale) + detail::student_freedom).inverse() * (detail::student_freedom + 1)).sqrt().matrix(),
+                     bench.declared().design.rows[t].sample, bench.records()[t].rate_Hz});
+  auto tone = find_tone(takes, bench.pitch_Hz());
+  stick_design d = bench.declared().design;
+  bench.add_tone(d, tone.frequency_Hz);
+  const auto fit = fit_design(d, bench.floor());
+  detail::finish_tone(takes, s.scale, fit.share, tone, h);
+  const double predicted = h.held_out_gain;
+  detail::settle_hypothesis(bench, fit, h);
+  h.held_out_gain = std::min(h.held_out_gain, predicted);
+  h.held_out_density = h.held_out_gain / h.share;
+  double size = 0;
+  for (const auto& own : fit.solution.own) size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
+  h.parameters[1].value = size;
+  return h;
+}
+
+/// The other law than the declared one.
+[[nodiscard]] inline contact_hypothesis law_hypothesis(const slip_bench& bench) {
+  const bool thermal = bench.declared().law != contact_law::thermal;
+  contact_hypothesis h{.effect = thermal ? "thermal-friction" : "velocity-curve-friction"};
+  h.statistic = "friction-residual";
+  h.free_parameters = thermal ? 3 : 0;
+  if (thermal && bench.declared().residual() < 2 * bench.floor()) {  // nothing is left to explain
+    h.decided = false;
+    h.fluctuation = bench.declared().residual();
+    h.share = bench.declared().fit.share;
+    return h;
+  }
+  const auto other = thermal ? fit_thermal(bench.records(), bench.floor()) : fit_velocity_curve(bench.records(), bench.floor());
+  detail::settle_hypothesis(bench, other.fit, h);
+  if (thermal && !other.heat_memory)
+    h.parameters = {{"conduction_1_s", other.rates.conduction_1_s, 0.2 * other.rates.conduction_1_s}, {"renewal", other.rates.renewal, 0.3 * other.rates.renewal + 100}, {"capacity_power", other.rates.capacity_power, 0.5}, {"exchange_1_m", other.rates.exchange_1_m, 0.2 * other.rates.exchange_1_m + 100}};
+  if (thermal && other.heat_memory)
+    h.parameters = {{"layer_m", other.heat.layer_m, other.heat.layer_m}, {"area_per_newton_m2", other.heat.area_per_newton_m2, other.heat.area_per_newton_m2}};
+  return h;
+}
+
+}  // namespace rosin

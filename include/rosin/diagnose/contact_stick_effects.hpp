@@ -1,0 +1,257 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Effects that show while the string sticks, each as columns in the equation of contact_stick.hpp. With eps = velocity of the
+// surface less that of the rod as declared, and f the force (specification sheet, 6.1, items 28 to 34):
+//
+//     torsion                  eps = -(h_T - h_declared) * f
+//     rod-resonance            eps = -Y * f,    Y = (s / m) / (s^2 + s w0 / q + w0^2): fixed in frequency whatever the string does
+//     elasto-plastic-friction  eps = -(s / (s0 (1 + s d))) f: before they give way, the bristles' spring s0 and damping s0 d
+//     creep                    eps = -sgn(f) v0 exp((|f| / N - mu) / a)
+//     speed-ripple             eps = v relative sin(2 pi frequency t + phase), whatever the force
+//
+// What is not linear is searched for on a grid, with a quick measure (how much of the weighted residual a column explains
+// besides the columns there are), then settled by Gauss-Newton steps.
+//
+#pragma once
+
+#include <rosin/diagnose/contact_stick.hpp>
+
+#include <functional>
+
+namespace rosin {
+
+namespace detail {
+
+/// How much of the residual of a design further columns would explain, in units of its variance.
+class explained {
+public:
+  explicit explained(const stick_design& design, const stick_solution& solution) : design_{&design}, scale_{solution.scale} {
+    const stacked s = stack(design.rows);
+    residual_.resize(s.y.size());
+    for (std::size_t t = 0; t < design.rows.size(); ++t) residual_.segment(s.first[t], s.first[t + 1] - s.first[t]) = solution.residual[t];
+    weight_ = ((residual_.array().square() / (scale_ * scale_) + student_freedom).inverse() * (student_freedom + 1)).sqrt().matrix();
+    first_ = s.first;
+    basis_ = weight_.asDiagonal() * s.x;
+    inverse_ = (basis_.transpose() * basis_ + 1e-12 * Eigen::MatrixXd::Identity(s.x.cols(), s.x.cols())).inverse();
+    residual_ = weight_.cwiseProduct(residual_);
+  }
+
+  /// One column, given for all samples of each take; `size` is its coefficient.
+  [[nodiscard]] double by(const std::vector<std::vector<double>>& samples, double& size) const {
+    Eigen::VectorXd c(residual_.size());
+    for (std::size_t t = 0; t < samples.size(); ++t) {
+      const auto& at = design_->rows[t].sample;
+      for (std::size_t i = 0; i < at.size(); ++i) c[first_[t] + static_cast<Eigen::Index>(i)] = samples[t][at[i]];
+    }
+    c = weight_.cwiseProduct(c);
+    const Eigen::VectorXd along = basis_.transpose() * c;
+    const double left = c.squaredNorm() - along.dot(inverse_ * along);
+    if (!(left > 1e-9 * c.squaredNorm())) return size = 0;
+    const double dot = c.dot(residual_);
+    size = dot / left;
+    return dot * dot / left / (scale_ * scale_);
+  }
+
+  [[nodiscard]] const Eigen::VectorXd& weighted_residual() const noexcept { return residual_; }
+  [[nodiscard]] const std::vector<Eigen::Index>& first() const noexcept { return first_; }
+
+private:
+  const stick_design* design_;
+  double scale_;
+  Eigen::VectorXd residual_, weight_;
+  std::vector<Eigen::Index> first_;
+  Eigen::MatrixXd basis_, inverse_;
+};
+
+/// Fills in what all hypotheses of sticking have in common.
+inline void settle_hypothesis(stick_bench& bench, const design_fit& fit, contact_hypothesis& h) {
+  const auto [all, held_out] = bench.gains(fit);
+  h.gain = all;
+  h.held_out_gain = held_out;
+  h.share = fit.share;
+  h.density = fit.density - bench.fit().density;
+  h.held_out_density = fit.held_out - bench.fit().held_out;
+  h.fluctuation = fit.solution.scale / bench.speed_m_s();
+  h.statistic = "stick-fluctuation";
+}
+
+/// The hypothesis found nothing: it is the model as declared.
+[[nodiscard]] inline contact_hypothesis nothing(const stick_bench& bench, contact_hypothesis h) {
+  h.decided = false;
+  h.share = bench.fit().share;
+  h.fluctuation = bench.fit().solution.scale / bench.speed_m_s();
+  h.statistic = "stick-fluctuation";
+  return h;
+}
+
+/// A transfer function with parameters in logarithms, and its size: column = size * transfer(theta).
+using transfer_family = std::function<std::complex<double>(const Eigen::VectorXd&, double)>;
+
+struct family_fit {
+  Eigen::VectorXd theta;
+  double size = 0;
+  design_fit fit{};
+  Eigen::MatrixXd covariance;  ///< of size, then of theta
+};
+
+/// Gauss-Newton on a family of transfer functions added to the declared equation; theta stays between `low` and `high`.
+[[nodiscard]] inline family_fit fit_family(stick_bench& bench, const transfer_family& family, Eigen::VectorXd theta, double size, const Eigen::VectorXd& low,
+                                           const Eigen::VectorXd& high, int steps) {
+  family_fit out{.theta = theta, .size = size, .covariance = {}};
+  for (int step = 0; step <= steps; ++step) {
+    stick_design d = bench.declared();
+    for (std::size_t t = 0; t < d.rows.size(); ++t) {
+      auto& record = bench.records()[t];
+      d.add_shared(t, record.force_through([&](double f) { return family(out.theta, f); }));
+      for (Eigen::Index k = 0; k < theta.size(); ++k) {
+        Eigen::VectorXd up = out.theta, down = out.theta;
+        up[k] += 2e-3, down[k] -= 2e-3;
+        d.add_shared(t, record.force_through([&](double f) { return out.size / 4e-3 * (family(up, f) - family(down, f)); }));
+      }
+    }
+    d.add_bound(0, 1e30);
+    for (Eigen::Index k = 0; k < theta.size(); ++k) d.add_bound(-0.3, 0.3);
+    const Eigen::Index first = d.rows.front().shared.cols() - theta.size() - 1;
+    stick_prior held;
+    if (step == steps) out.fit = fit_design(d, bench.floor_m_s());
+    else out.fit.solution = bounded_regression(d, bench.floor_m_s(), held);
+    out.size = out.fit.solution.shared[first];
+    out.covariance = out.fit.solution.covariance.bottomRightCorner(theta.size() + 1, theta.size() + 1);
+    if (step == steps || !(out.size > 0)) break;
+    out.theta = (out.theta + out.fit.solution.shared.tail(theta.size())).cwiseMax(low).cwiseMin(high);
+  }
+  if (!(out.fit.density != 0)) out.fit = bench.fit();
+  return out;
+}
+
+/// The mobility of a resonator of unit mass at theta = ln(frequency), ln(q), with the sign it has in the equation.
+[[nodiscard]] inline std::complex<double> rod_mobility(const Eigen::VectorXd& theta, double f) {
+  const double f0 = std::exp(theta[0]), q = std::exp(theta[1]);
+  return -std::complex<double>(0, f / (2 * std::numbers::pi)) / std::complex<double>(f0 * f0 - f * f, f * f0 / q);
+}
+
+/// The same as a recursion on a force's samples: quick, exact enough for a grid.
+[[nodiscard]] inline std::vector<double> ring(const std::vector<double>& force, double f0, double q, double rate) {
+  const double g = std::tan(std::numbers::pi * std::min(f0 / rate, 0.49)), gain = g / (1 + g / q + g * g);
+  std::vector<double> out(force.size());
+  double low = 0, band = 0;  // a state-variable filter: trapezoidal rule, resonance where it belongs
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    const double high = force[i] - (1 / q + g) * band - low;
+    const double b = gain * high + band, l = g * b + low;
+    out[i] = -b;
+    band = 2 * b - band, low = 2 * l - low;
+  }
+  return out;
+}
+
+}  // namespace detail
+
+/// Torsion is not as declared: its parameters free.
+[[nodiscard]] inline contact_hypothesis torsion_hypothesis(stick_bench& bench) {
+  contact_hypothesis h{.effect = "torsion"};
+  h.free_parameters = 3;
+  const auto& free = bench.free_torsion();
+  if (!free) return detail::nothing(bench, h);
+  const auto design = bench.equation(free->value, free->damping, true);
+  const auto fit = fit_design(design, bench.floor_m_s());
+  detail::settle_hypothesis(bench, fit, h);
+  h.parameters = {{"speed_ratio", free->value.speed_ratio, free->sd.speed_ratio},
+                  {"impedance_ratio", free->value.impedance_ratio, free->sd.impedance_ratio},
+                  {"q", free->value.q, free->sd.q}};
+  h.decided = free->decided();
+  return h;
+}
+
+/// The rod gives way along its motion.
+[[nodiscard]] inline contact_hypothesis rod_hypothesis(stick_bench& bench) {
+  contact_hypothesis h{.effect = "rod-resonance"};
+  h.free_parameters = 3;
+  const detail::explained quick(bench.declared(), bench.fit().solution);
+  std::vector<std::vector<double>> force, column(bench.records().size());
+  for (auto& r : bench.records()) force.push_back(r.force_through([](double) { return 1.0; }));
+  const double rate = bench.records().front().take().rate_Hz;
+  double best = 0, f_best = 1000, q_best = 10;
+  for (const double q : {4.0, 12.0, 40.0})
+    for (double f0 = 120; f0 < 0.25 * rate; f0 *= 1.03) {
+      for (std::size_t t = 0; t < force.size(); ++t) column[t] = detail::ring(force[t], f0, q, rate);
+      double size = 0;
+      const double gain = quick.by(column, size);
+      if (size > 0 && gain > best) best = gain, f_best = f0, q_best = q;
+    }
+  if (!(best > 0)) return detail::nothing(bench, h);
+  const Eigen::Vector2d start(std::log(f_best), std::log(q_best));
+  const auto found = detail::fit_family(bench, detail::rod_mobility, start, 1 / 5e-3, Eigen::Vector2d(std::log(80.0), std::log(2.5)),
+                                       Eigen::Vector2d(std::log(0.25 * rate), std::log(80.0)), 7);
+  detail::settle_hypothesis(bench, found.fit, h);
+  const double f0 = std::exp(found.theta[0]), q = std::exp(found.theta[1]), mass = found.size > 0 ? 1 / found.size : 1e9;
+  const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  if (sd.size() == 3) h.parameters = {{"frequency_Hz", f0, f0 * sd[1]}, {"q", q, q * sd[2]}, {"mass_kg", mass, mass * mass * sd[0]}};
+  h.decided = found.size > 0 && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1;
+  return h;
+}
+
+/// The contact yields elastically before it slides: a compliance, with a delay of its own.
+[[nodiscard]] inline contact_hypothesis bristle_hypothesis(stick_bench& bench) {
+  contact_hypothesis h{.effect = "elasto-plastic-friction"};
+  h.free_parameters = 2;
+  const detail::transfer_family family = [](const Eigen::VectorXd& theta, double f) {
+    const std::complex<double> s(0, 2 * std::numbers::pi * f);
+    return -1e-6 * s / (1.0 + s * std::exp(theta[0]));
+  };
+  const detail::explained quick(bench.declared(), bench.fit().solution);
+  double best = 0, delay_best = 1e-6, size_best = 1;
+  for (double delay = 1.25e-7; delay < 5e-5; delay *= 2) {
+    std::vector<std::vector<double>> column;
+    for (auto& r : bench.records()) column.push_back(r.force_through([&](double f) { return family(Eigen::VectorXd::Constant(1, std::log(delay)), f); }));
+    double size = 0;
+    const double gain = quick.by(column, size);
+    if (size > 0 && gain > best) best = gain, delay_best = delay, size_best = size;
+  }
+  if (!(best > 0)) return detail::nothing(bench, h);
+  const auto found = detail::fit_family(bench, family, Eigen::VectorXd::Constant(1, std::log(delay_best)), size_best,
+                                       Eigen::VectorXd::Constant(1, std::log(3e-8)), Eigen::VectorXd::Constant(1, std::log(1e-4)), 5);
+  detail::settle_hypothesis(bench, found.fit, h);
+  const double stiffness = found.size > 0 ? 1e6 / found.size : 1e12, delay = std::exp(found.theta[0]);
+  const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const double doubt = sd.size() == 2 ? std::hypot(sd[0], 0.7) : 1e3;  // what contacts are known to yield besides
+  h.parameters = {{"bristle_stiffness_N_m", stiffness, stiffness * stiffness * 1e-6 * doubt}, {"bristle_delay_s", delay, sd.size() == 2 ? delay * sd[1] : delay}};
+  h.decided = found.size > 3 * doubt;
+  return h;
+}
+
+/// It creeps while it sticks, the more the nearer to the limit of friction.
+[[nodiscard]] inline contact_hypothesis creep_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes) {
+  contact_hypothesis h{.effect = "creep"};
+  h.free_parameters = 2;
+  const detail::explained quick(bench.declared(), bench.fit().solution);
+  double best = 0, sharp = 0.1;
+  const auto columns = [&](double a) {
+    std::vector<std::vector<double>> out;
+    for (std::size_t t = 0; t < bench.records().size(); ++t) {
+      auto& record = bench.records()[t];
+      const auto force = record.force_through([](double) { return 1.0; });
+      std::vector<double> c(force.size());
+      for (std::size_t i = 0; i < c.size(); ++i) c[i] = -std::copysign(std::exp(std::min(4.0, (std::abs(force[i]) / takes[t].normal_force_N - 1) / a)), force[i]);
+      out.push_back(std::move(c));
+    }
+    return out;
+  };
+  for (const double a : {0.03, 0.05, 0.08, 0.13, 0.25, 1.0}) {
+    double size = 0;
+    const double gain = quick.by(columns(a), size);
+    if (size > 0 && gain > best) best = gain, sharp = a;
+  }
+  if (!(best > 0)) return detail::nothing(bench, h);
+  stick_design d = bench.declared();
+  const auto column = columns(sharp);
+  for (std::size_t t = 0; t < d.rows.size(); ++t) d.add_shared(t, column[t]);
+  d.add_bound(0, 1e9);
+  const auto fit = fit_design(d, bench.floor_m_s());
+  detail::settle_hypothesis(bench, fit, h);
+  const Eigen::Index last = fit.solution.shared.size() - 1;
+  h.parameters = {{"limit_speed_m_s", fit.solution.shared[last], std::sqrt(std::max(0.0, fit.solution.covariance(last, last)))}, {"sharpness", sharp, 0.4 * sharp}};
+  return h;
+}
+
+}  // namespace rosin

@@ -1,0 +1,89 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What the diagnosis of the contact works on, and what it says. In: the bowed takes of one rig, reconstructed, and what the rig's model
+// declares of the contact. Out: hypotheses, each one effect of the catalogue with its parameters, and by how much the takes
+// are likelier with it than without. All gains are in nats and counted in independent samples, so that they can be set
+// against each other: of the same data, what was declared is the common measure (gain 0).
+//
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <rosin/torsion/torsion_fit.hpp>
+
+namespace rosin {
+
+/// One bowed take after reconstruction; arrays of one length, NaN at both ends where a sample cannot be known.
+struct contact_take {
+  std::string name{};
+  std::span<const double> force_N{}, velocity_m_s{};                    ///< mean of both versions; the string's centre
+  std::span<const double> velocity_near_m_s{}, velocity_far_m_s{};      ///< the versions, if there are: how far they can be trusted
+  std::span<const double> near_N{}, far_N{};                            ///< calibrated forces on the terminations, if a contact of some width is to be tried
+  double rate_Hz = 0;
+  double rod_speed_m_s = 0, normal_force_N = 0;                         ///< declared; steady
+  std::array<double, 2> delay_s{};                                      ///< transverse travel times to the ends
+  double stiffness_s2 = 0, inverse_q = 0;                               ///< of the transverse waves, for a contact of some width
+  double impedance_Ns_m = 0;
+  double force_sd_N = 0, velocity_sd_m_s = 0;                           ///< random, of one sample
+  double edge_Hz = 0;                                                   ///< where the reconstruction's band ends; 0: 0.45 of the rate
+  double start_s = 0.03;                                                ///< until the stroke is steady
+};
+
+enum class contact_law { velocity_curve, thermal, elasto_plastic };
+
+/// What is taken for granted of the contact; effects that were found are added by include().
+struct contact_model {
+  std::optional<torsion_values> torsion{};
+  Eigen::Vector3d torsion_tolerance{0.002, 0.01, 0.03};  ///< relative sd of declared speed, impedance and q
+  contact_law law = contact_law::velocity_curve;
+  std::vector<std::string> included{};                   ///< effects found before and kept
+  std::optional<std::array<double, 3>> rod{};            ///< frequency (Hz), q, mass (kg) of a rod that resonates
+  std::optional<double> bristle_stiffness_N_m{}, bristle_delay_s{};
+  std::optional<double> speed_ripple_Hz{}, normal_ripple_Hz{};
+};
+
+struct contact_parameter {
+  std::string name;  ///< as in the catalogue
+  double value = 0, sd = 0;
+  [[nodiscard]] std::array<double, 2> ci95() const noexcept { return {value - 1.96 * sd, value + 1.96 * sd}; }
+};
+
+struct contact_hypothesis {
+  std::string effect;                          ///< name in the catalogue
+  std::vector<contact_parameter> parameters{};
+  double gain = 0;                             ///< log-likelihood of all takes over that of the model as declared, nats
+  double held_out_gain = 0;                    ///< of each take predicted from the others (or half from half), nats
+  int free_parameters = 0;
+  double density = 0, held_out_density = 0, share = 1; ///< sums of log densities over the declared model's, and independent rows / rows
+  double fluctuation = 0;                      ///< what is left of the statistic: relative to the rod's speed, or to the force
+  std::string statistic{};                     ///< "stick-fluctuation" or "friction-residual"
+  bool decided = true;                         ///< the parameters are determined
+
+  /// Gain less half a logarithm of the independent samples for each parameter (Schwarz).
+  [[nodiscard]] double evidence(double independent) const noexcept { return gain - 0.5 * free_parameters * std::log(std::max(1.0, independent)); }
+};
+
+/// The model with an effect that was found.
+[[nodiscard]] inline contact_model include(contact_model model, const contact_hypothesis& found) {
+  const auto value = [&](const char* name) -> double {
+    for (const auto& p : found.parameters)
+      if (p.name == name) return p.value;
+    return 0;
+  };
+  model.included.push_back(found.effect);
+  if (found.effect == "torsion") model.torsion = torsion_values{value("speed_ratio"), value("impedance_ratio"), value("q")};
+  if (found.effect == "rod-resonance") model.rod = {value("frequency_Hz"), value("q"), value("mass_kg")};
+  if (found.effect == "elasto-plastic-friction") model.bristle_stiffness_N_m = value("bristle_stiffness_N_m"), model.bristle_delay_s = value("bristle_delay_s");
+  if (found.effect == "speed-ripple") model.speed_ripple_Hz = value("frequency_Hz");
+  if (found.effect == "normal-force-ripple") model.normal_ripple_Hz = value("frequency_Hz");
+  if (found.effect == "thermal-friction") model.law = contact_law::thermal;
+  return model;
+}
+
+}  // namespace rosin

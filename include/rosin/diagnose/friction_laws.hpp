@@ -1,0 +1,217 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Laws of friction set against reconstructed slips, with no simulation that runs freely: each law is driven along the reconstructed
+// motion, through the same window, and asked for the force.
+//
+//     velocity curve   f = N mu(|v_r|)
+//     thermal          f = N mu(Theta),   dTheta/dt = |f v_r| / N^p - (a + b sqrt|v_r| + c |v_r|) Theta
+//
+// with mu a spline of as many coefficients in either, common to all takes. The thermal contact has one temperature, cooled by
+// what it conducts away (a into the string, b into a rod whose surface is renewed by sliding) and by the material that slides out (c);
+// p says whether its heat capacity grows with the normal force. (Specification sheet, 3.1 to 3.3. The whole
+// heat memory of friction/contact_heat.hpp is tried besides. Heat that is gone within a few samples would be no memory but the force itself: the rates are bounded.) Coefficients and rates are fitted by least squares with
+// Student's t, and each take is predicted from the others.
+//
+#pragma once
+
+#include <rosin/diagnose/contact_stick.hpp>
+#include <rosin/friction/slip_samples.hpp>
+
+namespace rosin {
+
+/// The slips of one take with all that drives a law.
+struct slip_record {
+  std::vector<double> force_N, relative_m_s;  ///< smoothed; surface less rod
+  contact_phases phases;
+  slip_samples slips;
+  double normal_N = 0, rate_Hz = 0;
+};
+
+struct thermal_rates {
+  double conduction_1_s = 300, renewal = 0, exchange_1_m = 3000, capacity_power = 0;  ///< a, b, c, p
+};
+
+struct law_fit {
+  contact_law law = contact_law::velocity_curve;
+  design_fit fit{};
+  stick_design design{};
+  thermal_rates rates{};
+  bool heat_memory = false;  ///< contact_heat.hpp instead of one temperature
+  contact_heat_parameters<double> heat{};
+
+  /// Robust rms of what is left, as a coefficient of friction.
+  [[nodiscard]] double residual() const noexcept { return fit.solution.scale; }
+};
+
+/// Smoothed force and motion of each take and their slips, a few samples clear of sticking.
+[[nodiscard]] inline std::vector<slip_record> slip_records(stick_bench& bench, const std::vector<contact_take>& takes) {
+  std::vector<slip_record> out;
+  for (std::size_t t = 0; t < bench.records().size(); ++t) {
+    auto& record = bench.records()[t];
+    slip_record r{record.force_through([](double) { return 1.0; }), bench.relative_m_s()[t], {}, {}, takes[t].normal_force_N, takes[t].rate_Hz};
+    const std::size_t begin = record.begin();
+    r.phases = find_phases(std::span(r.relative_m_s).subspan(0, record.end()).subspan(begin), takes[t].rod_speed_m_s, {.least = 0.1, .most = 0.5, .fluctuations = 5});
+    for (auto* list : {&r.phases.sticks, &r.phases.slips})
+      for (auto& s : *list) s.begin += begin, s.end += begin;
+    for (std::size_t margin = record.reach() - 1; margin + 3 > record.reach() && r.slips.sample.size() < 600; --margin)
+      r.slips = slips_of(r.force_N, r.relative_m_s, r.phases, takes[t].rod_speed_m_s, takes[t].normal_force_N, begin, margin);
+    out.push_back(std::move(r));
+  }
+  return out;
+}
+
+namespace detail {
+
+[[nodiscard]] inline std::vector<double> one_temperature(const slip_record& r, const std::vector<char>& slipping, const thermal_rates& k) {
+  std::vector<double> rise(r.relative_m_s.size());
+  const double step = 1 / r.rate_Hz, scale = 1e3 / std::pow(r.normal_N, k.capacity_power), rest = std::exp(-k.conduction_1_s * step);
+  double now = 0;
+  for (std::size_t i = 0; i < rise.size(); ++i) {
+    if (slipping[i]) {
+      const double v = std::abs(r.relative_m_s[i] - r.phases.level_m_s), rate = k.conduction_1_s + k.renewal * std::sqrt(v) + k.exchange_1_m * v;
+      const double x = rate * step, keep = std::exp(-x);
+      now = now * keep + scale * v * std::abs(r.force_N[i]) * (x > 1e-9 ? (1 - keep) / rate : step);
+    } else {
+      now *= rest;
+    }
+    rise[i] = now;
+  }
+  return rise;
+}
+
+/// A few rows more, hardly of weight: where a take has no samples the spline goes on straight, so that it can predict another take.
+inline void keep_smooth(stick_rows& rows, double weight = 0.1) {
+  const Eigen::Index n = rows.target.size(), extra = rows.shared.cols() - 2;
+  rows.target.conservativeResize(n + extra);
+  rows.shared.conservativeResize(n + extra, Eigen::NoChange);
+  for (Eigen::Index k = 0; k < extra; ++k) {
+    rows.target[n + k] = 0;
+    rows.shared.row(n + k).setZero();
+    rows.shared(n + k, k) = rows.shared(n + k, k + 2) = weight;
+    rows.shared(n + k, k + 1) = -2 * weight;
+    rows.sample.push_back(rows.sample.empty() ? 100 : rows.sample.back() + 100);
+  }
+}
+
+/// Rows of the spline equation for one x per sample and take; every `stride`-th slip sample.
+[[nodiscard]] inline stick_design law_design(const std::vector<slip_record>& records, const std::vector<Eigen::VectorXd>& x, std::size_t stride) {
+  std::vector<double> all;
+  for (const auto& v : x) all.insert(all.end(), v.data(), v.data() + v.size());
+  const smooth_functions functions(all);
+  stick_design d;
+  for (std::size_t t = 0; t < records.size(); ++t) {
+    const auto& s = records[t].slips;
+    const auto n = (s.sample.size() + stride - 1) / stride;
+    Eigen::VectorXd at(static_cast<Eigen::Index>(n)), y(at.size());
+    stick_rows rows;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto k = static_cast<Eigen::Index>(i * stride);
+      at[static_cast<Eigen::Index>(i)] = x[t][k], y[static_cast<Eigen::Index>(i)] = s.friction[k];
+      rows.sample.push_back(s.sample[i * stride]);
+    }
+    rows.target = y;
+    rows.shared = functions(at);
+    keep_smooth(rows);
+    rows.own = Eigen::MatrixXd(rows.target.size(), 0);
+    d.rows.push_back(std::move(rows));
+  }
+  for (Eigen::Index c = 0; c < d.rows.front().shared.cols(); ++c) d.add_bound(-1e30, 1e30);
+  return d;
+}
+
+/// What a law remembers, at the slips: the value of the sample before.
+[[nodiscard]] inline Eigen::VectorXd before_slips(const slip_record& r, const std::vector<double>& memory) {
+  Eigen::VectorXd x(static_cast<Eigen::Index>(r.slips.sample.size()));
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = memory[std::max<std::size_t>(1, r.slips.sample[static_cast<std::size_t>(i)]) - 1];
+  return x;
+}
+
+/// Median absolute residual of ordinary least squares: quick, for a search.
+[[nodiscard]] inline double quick_residual(const stick_design& d) {
+  const stacked s = stack(d.rows);
+  Eigen::MatrixXd h = s.x.transpose() * s.x;
+  h.diagonal().array() += 1e-9 * h.diagonal().maxCoeff();
+  const Eigen::VectorXd r = s.y - s.x * h.ldlt().solve(s.x.transpose() * s.y);
+  return std::sqrt(r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size())));
+}
+
+template <class Memory>
+[[nodiscard]] stick_design memory_design(const std::vector<slip_record>& records, const Memory& memory, std::size_t stride) {
+  std::vector<Eigen::VectorXd> x;
+  for (std::size_t t = 0; t < records.size(); ++t) x.push_back(before_slips(records[t], memory(t)));
+  return law_design(records, x, stride);
+}
+
+}  // namespace detail
+
+/// Precondition of both fits: 200 slip samples in all.
+[[nodiscard]] inline law_fit fit_velocity_curve(const std::vector<slip_record>& records, double floor) {
+  std::vector<Eigen::VectorXd> x;
+  for (const auto& r : records) x.push_back(r.slips.speed_m_s);
+  law_fit out;
+  out.design = detail::law_design(records, x, 2);
+  out.fit = fit_design(out.design, floor);
+  return out;
+}
+
+[[nodiscard]] inline law_fit fit_thermal(const std::vector<slip_record>& records, double floor) {
+  std::vector<std::vector<char>> slipping;
+  std::size_t samples = 0;
+  for (const auto& r : records) slipping.push_back(interior(r.phases.slips, r.relative_m_s.size(), 0)), samples += r.slips.sample.size();
+  const std::size_t stride = std::max<std::size_t>(2, samples / 6000);
+  const auto design = [&](const thermal_rates& k, std::size_t every) {
+    return detail::memory_design(records, [&](std::size_t t) { return detail::one_temperature(records[t], slipping[t], k); }, every);
+  };
+  law_fit out;
+  out.law = contact_law::thermal;
+  double best = 1e300;
+  const auto attempt = [&](thermal_rates k) {
+    if (!(k.conduction_1_s + k.renewal + k.exchange_1_m > 0) || k.conduction_1_s > 5e3 || k.renewal > 1e4 || k.exchange_1_m > 1.2e4) return 1e300;
+    const double r = detail::quick_residual(design(k, stride));
+    if (r < best) best = r, out.rates = k;
+    return r;
+  };
+  const auto scaled = [](double rate, double by) { return rate > 0 ? (rate * by < 2 ? 0.0 : rate * by) : by > 1 ? 20 * by : 0.0; };
+  const auto descend = [&](double smallest) {
+    for (double factor = 2.5; factor > smallest; factor = std::sqrt(factor))
+      for (int round = 0; round < 8; ++round) {  // the valley runs across a and c: their directions together, then b's
+        const double before = best;
+        const thermal_rates from = out.rates;
+        for (const auto& [i, j, k] : {std::array{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, 1}, {-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {0, 1, 0}, {0, -1, 0}})
+          attempt({scaled(from.conduction_1_s, std::pow(factor, i)), scaled(from.renewal, j == 0 ? 1.0 : std::pow(factor, j)), scaled(from.exchange_1_m, std::pow(factor, k)), from.capacity_power});
+        if (!(best < 0.999 * before)) break;
+      }
+  };
+  // Coarsely with either capacity, the better one to the end.
+  std::array<std::pair<double, thermal_rates>, 2> with_capacity;
+  for (const double p : {0.0, 1.0}) {
+    best = 1e300;
+    for (const double a : {100.0, 1000.0})
+      for (const double c : {0.0, 3000.0}) attempt({a, c > 0 ? 0.0 : 1000.0, c, p});
+    descend(1.2);
+    with_capacity[p > 0] = {best, out.rates};
+  }
+  best = 1e300;
+  attempt(with_capacity[with_capacity[1].first < with_capacity[0].first].second);
+  descend(1.005);
+  for (const double layer : {1e-6, 3e-6})
+    for (const double area : {0.7e-7, 1.5e-7}) {
+      const contact_heat_parameters<double> heat{.layer_m = layer, .area_per_newton_m2 = area};
+      const auto with_memory = [&](std::size_t t) {
+        const auto& r = records[t];
+        return temperature_along(r.force_N, r.relative_m_s, r.phases, r.normal_N, r.rate_Hz, heat);
+      };
+      if (const double r = detail::quick_residual(detail::memory_design(records, with_memory, stride)); r < best) best = r, out.heat_memory = true, out.heat = heat;
+    }
+  if (!out.heat_memory) out.design = design(out.rates, 2);
+  else
+    out.design = detail::memory_design(records, [&](std::size_t t) {
+      const auto& r = records[t];
+      return temperature_along(r.force_N, r.relative_m_s, r.phases, r.normal_N, r.rate_Hz, out.heat);
+    }, 2);
+  out.fit = fit_design(out.design, floor);
+  return out;
+}
+
+}  // namespace rosin

@@ -1,0 +1,56 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// One effect of the catalogue as the fit of plucks sees it: a name, where it may be, its parameters with bounds, and what it writes
+// into a scene. Where the fit is to begin is a list of starting points: a score test (pluck_score.hpp) finds the best of them.
+//
+#pragma once
+
+#include <rosin/calibrate/pluck_layout.hpp>
+#include <rosin/diagnose/pluck_scene.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace rosin {
+
+/// What the effects' starting points depend on.
+struct string_facts {
+  double fundamental_Hz = 0, rate_Hz = 0, highest_Hz = 0;
+  double impedance_Ns_m = 0;  ///< 0: unknown; masses and resistances are then relative to Z
+  double length_m = 0;        ///< 0: unknown
+  std::size_t takes = 0;
+};
+
+/// A parameter, in the unit of its name, within [low, high]. Positive quantities that span decades are fitted as logarithms.
+struct effect_parameter {
+  std::string name;
+  double low = 0, high = 0;
+  double step = 1e-6;        ///< for numerical derivatives; relative for logarithms
+  bool logarithmic = false;
+  int take = -1;             ///< the only take that it concerns; -1: all
+  bool by_score = false;     ///< found by score steps (pluck_effect::undo)
+  bool late = false;         ///< a correction: freed when everything else has settled
+};
+
+struct pluck_effect {
+  std::string name;                        ///< as in the format "diagnosis"
+  int place = -1;                          ///< 0 near, 1 far, for effects of one end or channel
+  bool at_end = false;                     ///< place is an end of the string, not a channel
+  std::vector<effect_parameter> parameters;
+  std::vector<std::vector<double>> starts; ///< physical values
+  int strength = 0;                        ///< index of the parameter that the effect vanishes with; -1: none does
+  std::function<void(pluck_scene&, const double* values, int take)> apply;
+  /// What is not linear works on the recordings: takes out of them what the effect (one parameter, from 0 on) has put in. Its
+  /// parameter is found by score steps, the rest of the fit in between.
+  std::function<void(std::vector<pluck_take>&, const pluck_layout&, const Eigen::VectorXd& v, double value)> undo{};
+  double horizon_periods = 1e9;  ///< the model of the effect holds for so long
+
+  [[nodiscard]] std::string id() const {
+    static constexpr const char* places[] = {"near", "far"};
+    return place < 0 ? name : name + "@" + places[place];
+  }
+};
+
+}  // namespace rosin

@@ -1,0 +1,178 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// The catalogue, as far as plucks tell of it: string, ends, wire, sensors (specification sheet 6.1, A to D). Each entry is a scene
+// that is a little different. A new effect is one function here, or in a header of its own, and one line in pluck_effects().
+//
+#pragma once
+
+#include <rosin/diagnose/pluck_effect.hpp>
+
+#include <cmath>
+
+namespace rosin {
+
+namespace detail {
+
+inline std::vector<double> geometric(double from, double to, double ratio) {
+  std::vector<double> out;
+  for (double x = from; x <= to; x *= ratio) out.push_back(x);
+  return out;
+}
+/// What yields between string and load: at most what a hundredth of the string's length would.
+inline double most_bond_s(const string_facts& s) { return 0.01 / (2 * s.fundamental_Hz); }
+/// Relative to Z where the impedance is unknown.
+inline double unit_of(const string_facts& s) { return s.impedance_Ns_m > 0 ? s.impedance_Ns_m : 1.0; }
+
+}  // namespace detail
+
+/// B: only where the model lacks it; the string's own inharmonicity b = pi^2 B / (T L^2) is freed.
+inline pluck_effect bending_stiffness_effect(const string_facts&) {
+  return {"bending-stiffness", -1, false, {{"inharmonicity", -1e-6, 0.01, 1e-8}}, {{1e-6}}, 0,
+          [](pluck_scene& s, const double* v, int) { s.string.inharmonicity += v[0]; }};
+}
+
+/// 1/Q = 1/Q0 + loss f; item 13.
+inline pluck_effect internal_loss_effect(const string_facts&) {
+  return {"frequency-dependent-loss", -1, false, {{"loss_internal_s", -1e-8, 3e-5, 1e-11}}, {{1e-8}}, 0,
+          [](pluck_scene& s, const double* v, int) { s.string.loss.internal_s += v[0]; }};
+}
+
+/// 1/Q = 1/Q0 + loss / sqrt(f), the boundary layer's part; section 5.
+inline pluck_effect air_loss_effect(const string_facts&) {
+  return {"air-loss", -1, false, {{"loss_air_sqrt_Hz", -1e-3, 1, 1e-6}}, {{1e-3}}, 0,
+          [](pluck_scene& s, const double* v, int) { s.string.loss.air_sqrt_Hz += v[0]; }};
+}
+
+/// A second plane of vibration; item 10.
+inline pluck_effect polarisation_effect(const string_facts&) {
+  pluck_effect e{"second-polarization", -1, false, {{"detuning", -0.03, 0.03, 1e-7}, {"coupling", -0.9, 0.9, 1e-5}}, {}, 1,
+                 [](pluck_scene& s, const double* v, int) { s.detuning = v[0], s.coupling = v[1]; }};
+  for (const double d : detail::geometric(1e-4, 0.021, 1.15))
+    for (const double sign : {-1.0, 1.0}) e.starts.push_back({sign * d, 1e-3});
+  return e;
+}
+
+/// A bead, a winding's end; item 17.
+inline pluck_effect point_mass_effect(const string_facts& f) {
+  const double Z = detail::unit_of(f), bond = detail::most_bond_s(f);
+  pluck_effect e{"point-mass", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"mass_kg", 0, 1e-2 * Z, 1e-9 * Z}, {"bond_s", -bond, bond, 1e-9, false, -1, false, true}}, {}, 1,
+                 [Z](pluck_scene& s, const double* v, int) { s.scatterers.push_back({v[0], v[1] / Z, 0, 0, v[2]}); }};
+  for (int i = 1; i < 96; ++i) e.starts.push_back({i / 96.0, 3e-8 * Z, 0});
+  return e;
+}
+
+/// A finger, felt; item 18.
+inline pluck_effect point_damper_effect(const string_facts& f) {
+  const double Z = detail::unit_of(f), bond = detail::most_bond_s(f);
+  pluck_effect e{"point-damper", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"resistance_Ns_m", 0, 50 * Z, 1e-6 * Z}, {"bond_s", -bond, bond, 1e-9, false, -1, false, true}}, {}, 1,
+                 [Z](pluck_scene& s, const double* v, int) { s.scatterers.push_back({v[0], 0, v[1] / Z, 0, v[2]}); }};
+  for (int i = 1; i < 64; ++i) e.starts.push_back({i / 64.0, 1e-5 * Z, 0});
+  return e;
+}
+
+/// A damped mass on a spring under the string's end; item 1.
+inline pluck_effect support_resonance_effect(const string_facts& f, int end) {
+  const double Z = detail::unit_of(f);
+  pluck_effect e{"support-resonance", end, true,
+                 {{"frequency_Hz", 20, f.highest_Hz, 1e-6, true}, {"q", 0.6, 3000, 1e-5, true}, {"per_mass_per_kg", 0, 1e5 / Z, 1e-4 / Z}}, {}, 2,
+                 [Z, end](pluck_scene& s, const double* v, int) {
+                   s.ends[static_cast<std::size_t>(end)].modes.push_back({v[0], v[1], v[2] * Z});
+                 }};
+  for (const double q : {6.0, 25.0, 100.0})
+    for (const double x : detail::geometric(std::min(100.0, 0.3 * f.fundamental_Hz), 0.8 * f.highest_Hz, 1 + 0.7 / q)) e.starts.push_back({x, q, 1e-2 / Z});
+  return e;
+}
+
+/// An end that takes energy at all frequencies alike; item 3.
+inline pluck_effect resistive_end_effect(const string_facts& f, int end) {
+  const double Z = detail::unit_of(f);
+  return {"resistive-end", end, true, {{"conductance_m_sN", 0, 0.5 / Z, 1e-8 / Z}}, {{1e-6 / Z}}, 0,
+          [Z, end](pluck_scene& s, const double* v, int) { s.ends[static_cast<std::size_t>(end)].conductance += v[0] * Z; }};
+}
+
+/// An end that is a mass without a spring; item 2.
+inline pluck_effect massive_end_effect(const string_facts& f, int end) {
+  const double Z = detail::unit_of(f);
+  return {"massive-end", end, true, {{"per_mass_per_kg", 0, 1e4 / Z, 1e-4 / Z}}, {{1e-2 / Z}}, 0,
+          [Z, end](pluck_scene& s, const double* v, int) { s.ends[static_cast<std::size_t>(end)].per_free_mass_per_s += v[0] * Z; }};
+}
+
+/// Both channels pass a first-order high-pass; item 6.
+inline pluck_effect ac_coupling_effect(const string_facts&) {
+  return {"ac-coupling", -1, false, {{"cutoff_Hz", 0.005, 200, 1e-5, true}}, {{0.1}, {0.5}, {2}, {8}, {25}, {70}}, -1,
+          [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
+}
+
+/// The transducer's own resonance; item 5.
+inline pluck_effect sensor_resonance_effect(const string_facts& f, int channel) {
+  pluck_effect e{"sensor-resonance", channel, false, {{"frequency_Hz", 300, 1.5 * f.rate_Hz, 1e-6, true}, {"q", 0.55, 500, 1e-5, true}}, {}, -1,
+                 [channel](pluck_scene& s, const double* v, int) {
+                   s.sensors[static_cast<std::size_t>(channel)].resonance_Hz = v[0];
+                   s.sensors[static_cast<std::size_t>(channel)].q = v[1];
+                 }};
+  for (const double q : {4.0, 12.0, 40.0})
+    for (const double x : detail::geometric(0.02 * f.rate_Hz, 0.8 * f.rate_Hz, 1 + 0.5 / q)) e.starts.push_back({x, q});
+  return e;
+}
+
+/// The far channel comes late; item 7.
+inline pluck_effect skew_effect(const string_facts&) {
+  return {"channel-skew", -1, false, {{"skew_s", -2e-3, 2e-3, 1e-11}}, {{1e-9}}, 0, [](pluck_scene& s, const double* v, int) {
+            s.sensors[0].delay_s -= v[0] / 2;
+            s.sensors[1].delay_s += v[0] / 2;
+          }};
+}
+
+/// A part of each channel in the other; item 9.
+inline pluck_effect crosstalk_effect(const string_facts&) {
+  return {"channel-crosstalk", -1, false, {{"fraction", -0.5, 0.5, 1e-7}}, {{1e-5}}, 0,
+          [](pluck_scene& s, const double* v, int) { s.crosstalk = v[0]; }};
+}
+
+/// The wire lets go over a time; item 24.
+inline pluck_effect slow_release_effect(const string_facts&) {
+  return {"slow-release", -1, false, {{"duration_s", 2e-7, 1e-3, 1e-5, true}}, {{3e-6}, {1e-5}, {3e-5}, {6e-5}, {1.2e-4}}, -1,
+          [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
+}
+
+/// The wire grips the string over a width; item 25.
+inline pluck_effect pluck_width_effect(const string_facts& f) {
+  const double L = f.length_m > 0 ? f.length_m : 1.0;
+  return {"finite-pluck-width", -1, false, {{"width_m", 1e-5 * L, 0.1 * L, 1e-5, true}}, {{3e-3 * L}, {1e-2 * L}, {3e-2 * L}}, -1,
+          [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
+}
+
+/// Mains hum: every take has its own phases; item 11.
+inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
+  constexpr int harmonics = 4;
+  pluck_effect e{"mains-hum", -1, false, {{"frequency_Hz", mains_Hz - 0.6, mains_Hz + 0.6, 1e-6, true}}, {{mains_Hz}}, -2, {}};
+  for (std::size_t t = 0; t < f.takes; ++t)
+    for (int i = 0; i < 4 * harmonics; ++i) {
+      e.parameters.push_back({"amplitude", -100, 100, 1e-5, false, static_cast<int>(t)});
+      e.starts[0].push_back(0);
+    }
+  e.apply = [](pluck_scene& s, const double* v, int take) {
+    for (int h = 0; h < harmonics; ++h) {
+      const double* a = v + 1 + 4 * (take * harmonics + h);
+      s.hum.push_back({v[0] * (h + 1), {std::complex<double>(a[0], a[1]), std::complex<double>(a[2], a[3])}});
+    }
+  };
+  return e;
+}
+
+/// All of them, in the order of the format. `physics`: names that the declared model already contains.
+[[nodiscard]] inline std::vector<pluck_effect> pluck_effects(const string_facts& f) {
+  std::vector<pluck_effect> all{bending_stiffness_effect(f), internal_loss_effect(f), air_loss_effect(f), polarisation_effect(f),
+                                point_mass_effect(f), point_damper_effect(f), ac_coupling_effect(f), skew_effect(f), crosstalk_effect(f),
+                                slow_release_effect(f), pluck_width_effect(f), hum_effect(f, 50), hum_effect(f, 60)};
+  for (const int place : {0, 1}) {
+    all.push_back(support_resonance_effect(f, place));
+    all.push_back(resistive_end_effect(f, place));
+    all.push_back(massive_end_effect(f, place));
+    all.push_back(sensor_resonance_effect(f, place));
+  }
+  return all;
+}
+
+}  // namespace rosin

@@ -1,0 +1,99 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What a pluck can meet that is linear: a stiff string with things on it, ends that give way, a wire that lets go slowly, sensors
+// with a life of their own. Every linear effect of the catalogue writes into this scene; the response is always a sum of damped
+// lines, poles of one determinant and their residues (string_response.hpp, string_poles.hpp).
+//
+// Impedances are relative to the string's Z and lengths are fractions, so that no tension in newtons is needed.
+//
+#pragma once
+
+#include <rosin/calibrate/pluck_model.hpp>
+
+#include <array>
+#include <complex>
+#include <vector>
+
+namespace rosin {
+
+/// Something on the string: impedance Z_s / Z = mass_s s + resistance + spring_per_s / s, held by a small compliance: nothing is a
+/// point, and what yields between string and load (extent, bond) is to first order a spring in series. May be slightly negative.
+struct scatterer {
+  double position = 0.5;    ///< fraction of the length from the near end
+  double mass_s = 0;        ///< M / Z
+  double resistance = 0;    ///< R / Z
+  double spring_per_s = 0;  ///< K / Z
+  double bond_s = 0;        ///< Z / K of the bond; 0: rigid
+
+  [[nodiscard]] std::complex<double> impedance(std::complex<double> s) const {
+    const std::complex<double> z = mass_s * s + resistance + spring_per_s / s;
+    return z / (1.0 + s * bond_s * z);
+  }
+};
+
+/// One mode of a termination: a damped mass on a spring.
+struct yielding_mode {
+  double frequency_Hz = 0, q = 1;
+  double per_mass_per_s = 0;  ///< Z / M: 0 is rigid
+};
+
+/// A termination that gives way: Z Y(s) = sum of modes + Z / R + Z / (M s).
+struct yielding_end {
+  std::vector<yielding_mode> modes;
+  double conductance = 0;         ///< Z / R
+  double per_free_mass_per_s = 0; ///< Z / M of an end that is nothing but a mass
+
+  [[nodiscard]] bool rigid() const { return modes.empty() && conductance == 0 && per_free_mass_per_s == 0; }
+  [[nodiscard]] std::complex<double> admittance(std::complex<double> s) const {
+    std::complex<double> sum = conductance + per_free_mass_per_s / s;
+    for (const yielding_mode& m : modes) {
+      const double w = 2 * std::numbers::pi * m.frequency_Hz;
+      sum += m.per_mass_per_s * s / (s * s + s * w / m.q + w * w);
+    }
+    return sum;
+  }
+};
+
+/// What a channel adds to the force on its end.
+struct sensor_response {
+  double resonance_Hz = 0, q = 1;  ///< H = w0^2 / (s^2 + s w0 / q + w0^2); 0: none
+  double corner_Hz = 0;            ///< first-order high-pass; 0: DC coupled
+  double delay_s = 0;              ///< the channel comes late by this
+
+  /// The pole of the resonance in the upper half plane (or one of two real ones).
+  [[nodiscard]] std::complex<double> pole() const {
+    const double w = 2 * std::numbers::pi * resonance_Hz;
+    return w * (-0.5 / q + std::sqrt(std::complex<double>(0.25 / (q * q) - 1)));
+  }
+  [[nodiscard]] std::complex<double> operator()(std::complex<double> s) const {
+    std::complex<double> h = std::exp(-s * delay_s);
+    const double w = 2 * std::numbers::pi * resonance_Hz, corner = 2 * std::numbers::pi * corner_Hz;
+    if (w > 0) h *= w * w / (s * s + s * w / q + w * w);
+    if (corner > 0) h *= s / (s + corner);
+    return h;
+  }
+};
+
+/// One harmonic of the mains as both channels see it: Re{ amplitude exp(i 2 pi f t) }, t from the take's beginning, newtons.
+struct hum_line {
+  double frequency_Hz = 0;
+  std::array<std::complex<double>, 2> amplitude_N{};
+};
+
+/// Everything linear that a pluck can meet.
+struct pluck_scene {
+  ringing_string string;
+  std::vector<scatterer> scatterers;
+  std::array<yielding_end, 2> ends;
+  double release_duration_s = 0;      ///< F(t) = F0 (1 + cos(pi t / d)) / 2
+  double width = 0;                   ///< of the wire's grip, fraction of the length
+  double detuning = 0, coupling = 0;  ///< second polarisation: (f_z - f_y) / f_y; tan tan of the two angles
+  std::array<sensor_response, 2> sensors;
+  double crosstalk = 0;               ///< of each channel in the other
+  std::vector<hum_line> hum;
+
+  [[nodiscard]] bool plain_string() const { return scatterers.empty() && ends[0].rigid() && ends[1].rigid(); }
+};
+
+}  // namespace rosin

@@ -1,0 +1,122 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Plucks fitted with effects of the catalogue, all parameters free together: the pitch is followed from the first periods to the
+// whole record, as in pluck_fit.hpp, so that a strong effect does not lock the fit onto a wrong period.
+//
+#pragma once
+
+#include <rosin/calibrate/pluck_fit.hpp>
+#include <rosin/diagnose/pluck_score.hpp>
+
+namespace rosin {
+
+struct scene_fit {
+  std::vector<pluck_effect> effects;
+  Eigen::VectorXd value, sd;
+  Eigen::MatrixXd covariance;
+  std::vector<double> score_sd;  ///< of parameters found by score steps
+  assessment quality;
+  double horizon_periods = 0;  ///< how much of the decay was used
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// How much of the recordings one descent looks at.
+struct fit_stage {
+  int partials = 1000;
+  double periods = 1e9;
+  bool filtered = true;  ///< all partials inside the band; else only so many, and the rest is taken for noise
+  freedom free = freedom::no_corrections;
+};
+
+/// What all fits of one rig have in common.
+struct scene_data {
+  std::vector<pluck_take> takes;
+  pluck_guess guess;
+  pluck_options options;
+  pluck_layout layout;
+
+  /// The recordings without what effects that are not linear have put in.
+  [[nodiscard]] std::vector<pluck_take> undone(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value) const {
+    std::vector<pluck_take> out = takes;
+    Eigen::Index at = layout.size();
+    for (const pluck_effect& e : effects) {
+      if (e.undo && value[at] != 0) e.undo(out, layout, value, value[at]);
+      at += static_cast<Eigen::Index>(e.parameters.size());
+    }
+    return out;
+  }
+  [[nodiscard]] line_problem<scene_plucks> problem(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value, const fit_stage& stage,
+                                                   std::array<double, 2> noise) const {
+    return {undone(effects, value), scene_plucks(layout, guess.ac_coupled_Hz, effects, stage.free), options, guess, value, stage.partials, stage.periods, stage.filtered, noise};
+  }
+};
+
+namespace detail {
+
+/// One score step for every effect that works on the recordings; returns the largest step in standard deviations.
+inline double score_steps(const scene_data& data, scene_fit& fit, const fit_stage& stage, std::array<double, 2> noise) {
+  double largest = 0;
+  Eigen::Index at = data.layout.size();
+  for (const pluck_effect& e : fit.effects) {
+    if (e.undo) {
+      const line_problem<scene_plucks> here = data.problem(fit.effects, fit.value, stage, noise);
+      Eigen::VectorXd moved = fit.value;
+      const double h = e.parameters[0].step;
+      moved[at] += h;
+      const line_problem<scene_plucks> there = data.problem(fit.effects, moved, stage, noise);
+      std::vector<std::array<Eigen::VectorXd, 2>> columns(here.takes());
+      for (std::size_t t = 0; t < here.takes(); ++t)
+        for (std::size_t c = 0; c < 2; ++c) columns[t][c] = (here.part(t, 1).data[c] - there.part(t, 1).data[c]) / h;
+      const auto found = pluck_score(here, fit.value).of_columns(columns);
+      fit.value[at] = std::clamp(fit.value[at] + found.mix, e.parameters[0].low, e.parameters[0].high);
+      fit.score_sd.push_back(found.sd);
+      largest = std::max(largest, found.sd > 0 ? std::abs(found.mix) / found.sd : 0.0);
+    }
+    at += static_cast<Eigen::Index>(e.parameters.size());
+  }
+  return largest;
+}
+
+/// Quality and covariance of a fit that has settled.
+inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<scene_plucks>& problem) {
+  fit.quality = problem.assess(fit.value);
+  const normal_equations end = problem.linearise(fit.value);
+  const Eigen::MatrixXd inverse = invert_free(problem.model(), end.hessian);
+  fit.covariance = inverse * (end.prior + fit.quality.inflation() * end.scatter) * inverse;
+  Eigen::Index at = data.layout.size();
+  std::size_t i = 0;
+  for (const pluck_effect& e : fit.effects) {
+    if (e.undo && i < fit.score_sd.size()) fit.covariance(at, at) = fit.quality.inflation() * std::pow(fit.score_sd[i++], 2);
+    at += static_cast<Eigen::Index>(e.parameters.size());
+  }
+  fit.sd = fit.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+}  // namespace detail
+
+/// `value`: starting values of all parameters (scene_plucks); the noise weighs the channels. Assessed after the last stage.
+[[nodiscard]] inline scene_fit fit_scene(const scene_data& data, const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value,
+                                         std::vector<fit_stage> stages, std::array<double, 2> noise) {
+  scene_fit fit{effects, value, {}, {}, {}, {}, 0, 0, false};
+  bool by_score = false;
+  for (const pluck_effect& e : effects) {
+    by_score = by_score || e.undo;
+    for (fit_stage& s : stages) s.periods = std::min(s.periods, e.horizon_periods);
+  }
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const bool last = i + 1 == stages.size();
+    for (int round = 0; round < (by_score ? (last ? 8 : 2) : 1); ++round) {
+      const line_problem<scene_plucks> problem = data.problem(effects, fit.value, stages[i], noise);
+      fit.converged = detail::descend(problem, problem.model(), value, fit.value, last ? 25 : 10, last ? 1e-2 : 1.0, fit.iterations);
+      fit.score_sd.clear();
+      if (by_score && detail::score_steps(data, fit, stages[i], noise) < 0.05) break;
+    }
+    fit.horizon_periods = stages[i].periods;
+  }
+  if (!stages.empty()) detail::conclude(fit, data, data.problem(effects, fit.value, stages.back(), noise));
+  return fit;
+}
+
+}  // namespace rosin

@@ -1,0 +1,162 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Plucks of a string together with effects of the catalogue, as the fit sees them: the parameters of pluck_layout, then those of
+// the effects. Poles depend on what all takes share only, so they are kept: a take's position, release or gain costs no new search.
+//
+#pragma once
+
+#include <rosin/calibrate/pluck_problem.hpp>
+#include <rosin/diagnose/pluck_effect.hpp>
+#include <rosin/diagnose/scene_lines.hpp>
+
+#include <memory>
+
+namespace rosin {
+
+namespace detail {
+
+/// Poles of scenes met so far, the newest last; each search begins from the nearest of them.
+class pole_memory {
+public:
+  [[nodiscard]] const std::vector<std::complex<double>>& of(const Eigen::VectorXd& key, const pluck_scene& scene, double highest_Hz, int most) {
+    for (const auto& e : kept_)
+      if (e.key == key) return e.poles;
+    std::vector<std::complex<double>> start;
+    double nearest = 1e-4;
+    for (const auto& e : kept_) {
+      const double apart = ((e.key - key).array() / (e.key.array().abs() + 1e-9)).abs().maxCoeff();
+      if (apart < nearest) nearest = apart, start = e.poles;
+    }
+    if (kept_.size() > 80) kept_.erase(kept_.begin(), kept_.begin() + 40);
+    kept_.push_back({key, string_poles(scene, highest_Hz, most, start)});
+    return kept_.back().poles;
+  }
+
+private:
+  struct entry {
+    Eigen::VectorXd key;
+    std::vector<std::complex<double>> poles;
+  };
+  std::vector<entry> kept_;
+};
+
+}  // namespace detail
+
+/// Fitted value of a parameter from its physical one, and back.
+[[nodiscard]] inline double to_fitted(const effect_parameter& p, double physical) { return p.logarithmic ? std::log(physical) : physical; }
+[[nodiscard]] inline double to_physical(const effect_parameter& p, double fitted) { return p.logarithmic ? std::exp(fitted) : fitted; }
+
+/// Which parameters a fit moves. Of a take that is only predicted, release and strength alone.
+enum class freedom { all, no_corrections, release_only };
+
+class scene_plucks : public pluck_layout {
+public:
+  scene_plucks(const pluck_layout& layout, std::array<double, 2> corner_Hz, std::vector<pluck_effect> effects, freedom free = freedom::all)
+      : pluck_layout{layout}, corner_Hz_{corner_Hz}, effects_{std::move(effects)}, free_{free}, poles_{std::make_shared<detail::pole_memory>()} {
+    for (const auto& e : effects_)
+      for (const auto& p : e.parameters) added_.push_back(p);
+  }
+
+  [[nodiscard]] const std::vector<pluck_effect>& effects() const { return effects_; }
+  [[nodiscard]] Eigen::Index plain_size() const { return pluck_layout::size(); }
+  [[nodiscard]] Eigen::Index size() const { return plain_size() + static_cast<Eigen::Index>(added_.size()); }
+  [[nodiscard]] const effect_parameter& added(Eigen::Index p) const { return added_[static_cast<std::size_t>(p - plain_size())]; }
+  /// Index of the first parameter of an effect.
+  [[nodiscard]] Eigen::Index first_of(std::size_t effect) const {
+    Eigen::Index at = plain_size();
+    for (std::size_t i = 0; i < effect; ++i) at += static_cast<Eigen::Index>(effects_[i].parameters.size());
+    return at;
+  }
+  [[nodiscard]] bool is_free(Eigen::Index p) const {
+    if (free_ == freedom::release_only)
+      return p >= plain_size() ? added(p).take >= 0 : p >= at(0, 0) && (p - at(0, 0)) % take_size <= static_cast<Eigen::Index>(pluck_layout::strength);
+    return p >= plain_size() ? !added(p).by_score && (free_ == freedom::all || !added(p).late) : pluck_layout::is_free(p);
+  }
+  [[nodiscard]] bool is_scale(Eigen::Index p) const { return p < plain_size() && pluck_layout::is_scale(p); }
+  [[nodiscard]] bool concerns(Eigen::Index p, std::size_t take) const {
+    if (p < plain_size()) return pluck_layout::concerns(p, take);
+    return added(p).take < 0 || added(p).take == static_cast<int>(take);
+  }
+  [[nodiscard]] double step(Eigen::Index p, const Eigen::VectorXd& v) const { return p < plain_size() ? pluck_layout::step(p, v) : added(p).step; }
+  [[nodiscard]] knowledge prior(Eigen::Index p, const std::vector<pluck_take>& takes, const pluck_guess& guess) const {
+    return p < plain_size() ? pluck_layout::prior(p, takes, guess) : knowledge{0, 0};
+  }
+  [[nodiscard]] std::string name(Eigen::Index p) const { return p < plain_size() ? pluck_layout::name(p) : added(p).name; }
+  [[nodiscard]] bool plausible(const Eigen::VectorXd& v, const Eigen::VectorXd& start, double highest_Hz) const {
+    bool ok = pluck_layout::plausible(v.head(plain_size()), start.head(plain_size()), highest_Hz);
+    for (Eigen::Index p = plain_size(); p < size(); ++p)
+      ok = ok && v[p] >= to_fitted(added(p), added(p).low) - 1e-12 && v[p] <= to_fitted(added(p), added(p).high) + 1e-12;
+    return ok;
+  }
+
+  [[nodiscard]] pluck_scene scene(const Eigen::VectorXd& v, int take) const {
+    pluck_scene s;
+    s.string = string(v);
+    for (std::size_t c = 0; c < 2; ++c) s.sensors[c].corner_Hz = corner_Hz_[c];
+    Eigen::Index at = plain_size();
+    for (const auto& e : effects_) {
+      std::vector<double> values;
+      for (const auto& p : e.parameters) values.push_back(to_physical(p, v[at++]));
+      if (e.apply) e.apply(s, values.data(), take);
+    }
+    return s;
+  }
+
+  [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
+                                               const band& limits, int most) const {
+    const pluck_scene s = scene(v, static_cast<int>(take));
+    const double position_now = v[position(take)], released = release_s(v, take), newtons = std::exp(v[at(take, strength)]);
+    std::vector<damped_line> out;
+    if (part == 1) {
+      static const std::vector<std::complex<double>> none;
+      out = scene_lines(s, position_now, limits, most, s.plain_string() ? none : poles_->of(key(v), s, limits.stop_Hz, most));
+      for (damped_line& line : out) {
+        const std::complex<double> turned = newtons * std::exp(line.pole * (begin_s - released));
+        for (auto& r : line.residue) r *= turned;
+      }
+    }
+    for (damped_line& line : out)
+      for (std::size_t c = 0; c < 2; ++c) line.residue[c] *= gain(v, c);
+    add_slow(out, s, v, take, part, begin_s);
+    for (const hum_line& h : s.hum) {
+      damped_line line{{0, 2 * std::numbers::pi * h.frequency_Hz}, h.amplitude_N};
+      for (auto& r : line.residue) r *= std::exp(line.pole * begin_s);
+      out.push_back(line);
+    }
+    return out;
+  }
+
+private:
+  [[nodiscard]] static double gain(const Eigen::VectorXd& v, std::size_t c) { return std::exp(v[gain_near + static_cast<int>(c)]); }
+
+  /// What the poles depend on.
+  [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v) const {
+    Eigen::VectorXd k(gain_near + v.size() - plain_size());
+    k << v.head(gain_near), v.tail(v.size() - plain_size());
+    return k;
+  }
+
+  /// Offsets, the held string before the release, and what a high-pass makes of both.
+  void add_slow(std::vector<damped_line>& out, const pluck_scene& s, const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s) const {
+    const double released = release_s(v, take), newtons = std::exp(v[at(take, strength)]);
+    const auto still = static_forces(v[position(take)]);
+    for (std::size_t c = 0; c < 2; ++c) {
+      const double corner = 2 * std::numbers::pi * s.sensors[c].corner_Hz, offset = v[at(take, offset_near + static_cast<int>(c))];
+      const double held = newtons * gain(v, c) * (still[c] + s.crosstalk * still[1 - c]);
+      damped_line slow{-corner, {}};
+      slow.residue[c] = offset * std::exp(-corner * begin_s);
+      if (corner == 0 && part == 0) slow.residue[c] += held;
+      if (corner > 0 && part == 1) slow.residue[c] -= held * std::exp(-corner * (begin_s - released));
+      out.push_back(slow);
+    }
+  }
+
+  std::array<double, 2> corner_Hz_;
+  std::vector<pluck_effect> effects_;
+  freedom free_;
+  std::vector<effect_parameter> added_;
+  std::shared_ptr<detail::pole_memory> poles_;
+};
+
+}  // namespace rosin

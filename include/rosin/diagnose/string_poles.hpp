@@ -1,0 +1,105 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Poles of a string with scatterers and yielding ends, and the residues of its free decay from a static deflection:
+//
+//     F_j(t) = -F sum_p  Res_p[ H_j(s) / s ] exp(s_p t)   for t > 0,    H_j = N_j / D  (string_response.hpp)
+//
+// Aberth's simultaneous Newton iteration: every root repels its neighbours, so that no two can fall onto one pole where a
+// support's resonance crosses a partial. Strength is raised from nothing in steps, each root following from the last.
+//
+#pragma once
+
+#include <rosin/diagnose/string_response.hpp>
+
+#include <algorithm>
+
+namespace rosin {
+
+namespace detail {
+
+/// D(s), times the polynomials of the ends' modes: entire around the roots that are sought.
+inline std::complex<double> characteristic(const pluck_scene& scene, std::complex<double> s, double strength) {
+  std::complex<double> value = close_loop(scene, 0.5, s, strength).determinant;
+  for (const yielding_end& end : scene.ends)
+    for (const yielding_mode& m : end.modes) {
+      const double w = 2 * std::numbers::pi * m.frequency_Hz;
+      value *= (s * s + s * w / m.q + w * w) / (w * w);
+    }
+  return value;
+}
+
+/// One Aberth sweep; returns the largest correction relative to the spacing.
+inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>& roots, double strength, double spacing) {
+  constexpr std::size_t neighbours = 3;
+  double largest = 0;
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    const std::complex<double> s = roots[i], h(0, 1e-4 * spacing);
+    const std::complex<double> above = characteristic(scene, s + h, strength), below = characteristic(scene, s - h, strength);
+    const std::complex<double> here = 0.5 * (above + below), slope = (above - below) / (2.0 * h);
+    std::complex<double> repulsion = 0;
+    for (std::size_t j = i > neighbours ? i - neighbours : 0; j < std::min(roots.size(), i + neighbours + 1); ++j)
+      if (j != i && std::abs(roots[i] - roots[j]) > 1e-9 * spacing) repulsion += 1.0 / (roots[i] - roots[j]);
+    // The roots that are not sought stand in a regular comb; only what a neighbour adds beyond it must repel.
+    const std::complex<double> newton = here / slope;
+    std::complex<double> step = newton / (1.0 - newton * repulsion);
+    if (std::abs(newton) < 0.02 * spacing || !std::isfinite(std::abs(step))) step = newton;
+    if (std::abs(step) > 0.3 * spacing) step *= 0.3 * spacing / std::abs(step);
+    roots[i] -= step;
+    largest = std::max(largest, std::abs(step) / spacing);
+  }
+  return largest;
+}
+
+}  // namespace detail
+
+/// Poles below `highest_Hz`, in order of frequency. `near`: poles of a scene much like this one, to begin from; may be empty.
+[[nodiscard]] inline std::vector<std::complex<double>> string_poles(const pluck_scene& scene, double highest_Hz, int most,
+                                                                    const std::vector<std::complex<double>>& near = {}) {
+  const double spacing = 2 * std::numbers::pi * scene.string.fundamental_Hz;
+  std::vector<std::complex<double>> roots = near;
+  const bool warm = !near.empty();
+  if (!warm) {
+    for (int n = 1; n <= most; ++n) {
+      const double f = scene.string.partial_Hz(n);
+      if (f >= highest_Hz) break;
+      roots.emplace_back(-std::numbers::pi * f * scene.string.loss.inverse_q(f), 2 * std::numbers::pi * f);
+    }
+    for (const yielding_end& end : scene.ends)
+      for (const yielding_mode& m : end.modes) {
+        const double w = 2 * std::numbers::pi * m.frequency_Hz;
+        roots.emplace_back(-w / (2 * m.q), w * std::sqrt(std::max(0.01, 1 - 0.25 / (m.q * m.q))));
+      }
+    std::sort(roots.begin(), roots.end(), [](auto a, auto b) { return a.imag() < b.imag(); });
+  }
+  const std::vector<std::complex<double>> begin = roots;
+  const double first = detail::sweep(scene, roots, 1.0, spacing);
+  if (warm || first < 0.01) {  // next to where it began
+    for (int i = 0; i < 8; ++i)
+      if (detail::sweep(scene, roots, 1.0, spacing) < 1e-9) return roots;
+  }
+  roots = begin;
+  for (double strength = 0.125; strength <= 1.0; strength += 0.125)
+    for (int i = 0; i < (strength == 1.0 ? 12 : 4); ++i)
+      if (detail::sweep(scene, roots, strength, spacing) < 1e-9) break;
+  return roots;
+}
+
+/// Free decay of a pluck of 1 N at `position`, from its poles. Residues at the instant of release.
+[[nodiscard]] inline std::vector<damped_line> decay_lines(const pluck_scene& scene, double position,
+                                                          const std::vector<std::complex<double>>& poles) {
+  const double spacing = 2 * std::numbers::pi * scene.string.fundamental_Hz;
+  std::vector<damped_line> lines;
+  for (const std::complex<double> s : poles) {
+    const std::complex<double> h(0, 1e-4 * spacing);
+    const loop_response above = close_loop(scene, position, s + h), below = close_loop(scene, position, s - h);
+    const std::complex<double> slope = (above.determinant - below.determinant) / (2.0 * h);
+    damped_line line{s, {}};
+    for (std::size_t e = 0; e < 2; ++e)
+      line.residue[e] = -2.0 * 0.5 * (above.times_determinant[e] + below.times_determinant[e]) / (slope * s);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace rosin
