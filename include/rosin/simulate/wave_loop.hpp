@@ -1,0 +1,141 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// The two echoes that make a string a loop: from the contact to an end and back, as FIR kernels R1 and R2 of negative
+// sign. By frequency sampling they follow exp(-2 gamma x) everywhere but at the lowest partials: a loss proportional
+// to |w| has tails 1 / t^2 that a kernel of finite length must cut (specification sheet, section 2), and cutting
+// those before t = 0, or scaling the rest up to -1 at 0 Hz, falsifies Q by per cents. So the longer kernel is corrected:
+//
+//     R1(z_n) R2(z_n) = 1  at z_n = exp(p_n h) for every partial's pole p_n,      R(1) = -1,
+//
+// by the change of its taps that is smallest in the least-squares sense, errors being weighed against each partial's loss. The loop
+// then has the pitch and the Q that are asked for, causally, and every partial at its place.
+//
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include <rosin/propagate/fir.hpp>
+
+namespace rosin {
+
+/// sum of taps[j] z^-(first + j): the response to a motion z^n, also a damped one.
+[[nodiscard]] inline std::complex<double> response_at(const fir& kernel, std::complex<double> z) {
+  const auto back = 1.0 / z;
+  std::complex<double> sum = 0;
+  for (std::size_t j = kernel.taps.size(); j-- > 0;) sum = sum * back + kernel.taps[j];
+  return sum * std::pow(back, kernel.first);
+}
+
+/// Both echoes; first >= 1.
+struct wave_loop {
+  std::array<fir, 2> echo;
+  double largest_change = 0;  ///< of a partial's loop gain by the correction, absolute
+};
+
+/// Taps first ... last of an echo, made to be -1 with the delay (in samples) at 0 Hz: what of the response lies outside is
+/// replaced by a straight line over the taps.
+template <Transfer H>
+[[nodiscard]] fir sample_echo(const H& wanted, const band& limits, double rate_Hz, int first, int last, double delay) {
+  fir out = sample_response(wanted, limits, rate_Hz, first, last);
+  const double count = static_cast<double>(out.taps.size()), middle = (first + last) / 2.0;
+  double sum = 0, moment = 0;
+  for (std::size_t k = 0; k < out.taps.size(); ++k) {
+    sum += out.taps[k];
+    moment += out.taps[k] * (first + static_cast<double>(k) - middle);
+  }
+  const double level = (-1 - sum) / count;
+  const double slope = count > 1 ? (-(delay - middle) - moment) / (count * (count * count - 1) / 12) : 0;
+  for (std::size_t k = 0; k < out.taps.size(); ++k) out.taps[k] += level + slope * (first + static_cast<double>(k) - middle);
+  return out;
+}
+
+namespace detail {
+
+/// Rows of the least-squares problem: what each tap of `other`'s partner adds to the loop gain at a pole.
+inline void add_pole_rows(Eigen::MatrixXd& rows, Eigen::VectorXd& wanted, Eigen::Index n, const wave_loop& loop, std::complex<double> pole,
+                          double step_s) {
+  const auto z = std::exp(pole * step_s), back = 1.0 / z;
+  const fir& shaped = loop.echo[1];
+  const auto through = response_at(loop.echo[0], z), error = 1.0 - through * response_at(shaped, z);
+  const double weight = 1 / (1e-9 - pole.real() / std::abs(pole));
+  auto term = weight * through * std::pow(back, shaped.first);
+  for (Eigen::Index k = 0; k < rows.cols(); ++k, term *= back) {
+    rows(2 * n, k) = term.real();
+    rows(2 * n + 1, k) = term.imag();
+  }
+  wanted[2 * n] = weight * error.real();
+  wanted[2 * n + 1] = weight * error.imag();
+}
+
+}  // namespace detail
+
+/// Sets the loop's poles; each is given for Im p > 0. echo[1] has to be the longer kernel; `delay` is its own, in samples.
+inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> poles, double step_s, double delay, double stiffness = 1e-3) {
+  auto& taps = loop.echo[1].taps;
+  const double shaped_first = loop.echo[1].first;
+  const auto rows_wanted = static_cast<Eigen::Index>(2 * poles.size() + 2);
+  Eigen::MatrixXd rows(rows_wanted, static_cast<Eigen::Index>(taps.size()));
+  Eigen::VectorXd wanted(rows_wanted);
+  for (std::size_t n = 0; n < poles.size(); ++n) {
+    detail::add_pole_rows(rows, wanted, static_cast<Eigen::Index>(n), loop, poles[n], step_s);
+    const auto z = std::exp(poles[n] * step_s);
+    loop.largest_change = std::max(loop.largest_change, std::abs(1.0 - response_at(loop.echo[0], z) * response_at(loop.echo[1], z)));
+  }
+  double moment = 0;
+  for (Eigen::Index k = 0; k < rows.cols(); ++k) {  // R(1) stays -1, and the delay at 0 Hz what it is
+    const double lag = (shaped_first + static_cast<double>(k)) / delay - 1;
+    rows(rows_wanted - 2, k) = 1e6;
+    rows(rows_wanted - 1, k) = 1e5 * lag;
+    moment += taps[static_cast<std::size_t>(k)] * lag;
+  }
+  wanted[rows_wanted - 2] = 0;
+  wanted[rows_wanted - 1] = -1e5 * moment;
+  Eigen::MatrixXd normal = rows.transpose() * rows;
+  double weight = 0;  // of a partial's error, on average
+  for (const auto& p : poles) weight += std::abs(p) / (-p.real()) / static_cast<double>(poles.size());
+  normal.diagonal().array() += stiffness * stiffness * weight * weight * static_cast<double>(poles.size());
+  const Eigen::VectorXd change = normal.ldlt().solve(rows.transpose() * wanted);
+  for (std::size_t k = 0; k < taps.size(); ++k) taps[k] += change[static_cast<Eigen::Index>(k)];
+}
+
+/// The loop's own pole next to a wanted one, by Newton's method on R1 R2 = 1: what pitch and Q have become.
+[[nodiscard]] inline std::complex<double> pole_near(const wave_loop& loop, std::complex<double> start, double step_s) {
+  auto p = start;
+  for (int i = 0; i < 20; ++i) {
+    const auto gain = [&](std::complex<double> s) {
+      const auto z = std::exp(s * step_s);
+      return response_at(loop.echo[0], z) * response_at(loop.echo[1], z) - 1.0;
+    };
+    const double small = 1e-6 * std::abs(p);
+    const auto here = gain(p), slope = (gain(p + small) - gain(p - small)) / (2 * small);
+    const auto change = here / slope;
+    p -= change;
+    if (std::abs(change) < 1e-12 * std::abs(p)) break;
+  }
+  return p;
+}
+
+/// Largest |R1 R2| where its phase is that of a partial (within 40 degrees), from 0.3 of the first one's frequency on: from 1
+/// on it would grow. Elsewhere, and at 0 Hz, where the gain is 1, nothing can.
+[[nodiscard]] inline double largest_gain(const wave_loop& loop, double period) {
+  const int points = 16 * (loop.echo[0].last() + loop.echo[1].last());
+  double largest = 0;
+  for (int i = 1; i <= points; ++i) {
+    if (i * period < 0.6 * points) continue;
+    const auto z = std::polar(1.0, std::numbers::pi * i / points);
+    const auto gain = response_at(loop.echo[0], z) * response_at(loop.echo[1], z);
+    if (gain.real() > 0.77 * std::abs(gain)) largest = std::max(largest, std::abs(gain));
+  }
+  return largest;
+}
+
+}  // namespace rosin

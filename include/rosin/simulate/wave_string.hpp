@@ -1,0 +1,225 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// The string in motion: line() says how its surface would move in the coming step under any force, apply() takes the
+// force that the law of friction found. Echoes need time, so all they do is computed for a block of steps at once,
+// as dense FIR sums; only the law and the near part of the string run step by step. Nothing is allocated while it runs.
+//
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include <Eigen/Core>
+
+#include <rosin/friction/friction_law.hpp>
+#include <rosin/simulate/modal_contact.hpp>
+#include <rosin/simulate/wave_kernels.hpp>
+
+namespace rosin {
+
+/// A signal whose past is kept as far as it is needed; indices count from the start of the run.
+template <class T>
+class wave_tape {
+public:
+  wave_tape() = default;
+  wave_tape(std::ptrdiff_t past, std::ptrdiff_t ahead)
+      : past_{past}, start_{-past}, data_(static_cast<std::size_t>(4 * past + 4 * ahead + 4096), T(0)) {}
+
+  [[nodiscard]] T* at(std::ptrdiff_t i) noexcept { return data_.data() + (i - start_); }
+  [[nodiscard]] const T* at(std::ptrdiff_t i) const noexcept { return data_.data() + (i - start_); }
+
+  /// Makes room for indices below `end`, of which those from `now` - past on are kept; new ones are 0.
+  void turn(std::ptrdiff_t now, std::ptrdiff_t end) noexcept {
+    if (end - start_ <= static_cast<std::ptrdiff_t>(data_.size())) return;
+    const auto drop = std::min(now - past_ - start_, static_cast<std::ptrdiff_t>(data_.size()));
+    std::fill(std::move(data_.begin() + drop, data_.end(), data_.begin()), data_.end(), T(0));
+    start_ += drop;
+  }
+
+private:
+  std::ptrdiff_t past_ = 0, start_ = 0;
+  std::vector<T> data_{};
+};
+
+namespace detail {
+
+/// out[i] += sum over k of taps[k] in[i - first - k], i = 0 ... count - 1.
+template <class T>
+inline void add_filtered(const wave_taps<T>& kernel, const T* in, T* out, std::ptrdiff_t count) noexcept {
+  constexpr std::ptrdiff_t width = 8;
+  using pack = Eigen::Array<T, width, 1>;
+  const auto taps = static_cast<std::ptrdiff_t>(kernel.taps.size());
+  const T* h = kernel.taps.data();
+  const T* x = in - kernel.first;
+  std::ptrdiff_t i = 0;
+  for (; i + width <= count; i += width) {
+    pack even = Eigen::Map<const pack>(out + i), odd = pack::Zero();
+    std::ptrdiff_t k = 0;
+    for (; k + 1 < taps; k += 2) {
+      even += h[k] * Eigen::Map<const pack>(x + i - k);
+      odd += h[k + 1] * Eigen::Map<const pack>(x + i - k - 1);
+    }
+    if (k < taps) even += h[k] * Eigen::Map<const pack>(x + i - k);
+    Eigen::Map<pack>(out + i) = even + odd;
+  }
+  for (; i < count; ++i)
+    for (std::ptrdiff_t k = 0; k < taps; ++k) out[i] += h[k] * x[i - k];
+}
+
+/// The same for every `stride`-th input: out[i] += sum taps[k] in[stride i - first - k].
+template <class T>
+inline void add_thinned(const wave_taps<T>& kernel, const T* in, std::ptrdiff_t stride, T* out, std::ptrdiff_t count) noexcept {
+  constexpr std::ptrdiff_t width = 8;
+  using pack = Eigen::Array<T, width, 1>;
+  const auto taps = static_cast<std::ptrdiff_t>(kernel.taps.size());  // symmetric: order does not matter
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const T* x = in + stride * i - kernel.last();
+    pack sum = pack::Zero();
+    std::ptrdiff_t k = 0;
+    for (; k + width <= taps; k += width) sum += Eigen::Map<const pack>(kernel.taps.data() + k) * Eigen::Map<const pack>(x + k);
+    T total = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+    for (; k < taps; ++k) total += kernel.taps[static_cast<std::size_t>(k)] * x[k];
+    out[i] += total;
+  }
+}
+
+}  // namespace detail
+
+/// Velocities at the contact at the end of a step.
+template <class T>
+struct wave_state {
+  T centre_m_s{}, torsion_m_s{};
+};
+
+template <class T = double>
+class wave_string {
+public:
+  explicit wave_string(wave_kernels<T> kernels)
+      : k_{std::move(kernels)},
+        wave_ahead_{k_.block / k_.stride + k_.fill_ahead() + 2},
+        force_{thin_reach(), k_.block},
+        velocity_{0, k_.block + static_cast<std::ptrdiff_t>(k_.local.size())},
+        echoes_{k_.fill_ahead() + fill_back() + 8, wave_ahead_},
+        out_{tape(k_.reach_back()), tape(k_.reach_back())},
+        back_{tape(8), tape(8)} {
+    begin_block();
+  }
+
+  /// The coming step as the law of friction sees it.
+  [[nodiscard]] load_line<T> line(const rod_state& rod) const noexcept {
+    return {*velocity_.at(now_) + turn_velocity(), mobility_, static_cast<T>(rod.velocity_m_s), static_cast<T>(rod.normal_force_N),
+            static_cast<T>(k_.step_s)};
+  }
+
+  /// Ends the coming step with this force.
+  wave_state<T> apply(T force_N) noexcept {
+    const auto size = static_cast<Eigen::Index>(k_.local.size());
+    T* velocity = velocity_.at(now_);
+    Eigen::Map<row>(velocity, size) += force_N * Eigen::Map<const row>(k_.local.data(), size);
+    const wave_state<T> state{*velocity, turn_velocity() + turn_mobility_ * force_N};
+    *force_.at(now_) = force_N;
+    if (turns_) k_.turn.advance({static_cast<double>(force_N)});
+    last_force_ = force_N;
+    if (++now_ == block_end_) begin_block();
+    return state;
+  }
+
+  /// Waves that have left for side j up to now: values n ... waves() - 1 at the waves' rate; the last reach_back() are kept.
+  [[nodiscard]] std::ptrdiff_t waves() const noexcept { return sent_; }
+  [[nodiscard]] T wave(std::size_t j, std::ptrdiff_t n) const noexcept { return *out_[j].at(n); }
+  [[nodiscard]] const wave_kernels<T>& kernels() const noexcept { return k_; }
+
+private:
+  using row = Eigen::Array<T, Eigen::Dynamic, 1>;
+
+  [[nodiscard]] std::ptrdiff_t thin_reach() const noexcept { return k_.block + 2 * k_.stride + 8 + (k_.thin.empty() ? 0 : 2 * k_.thin.last()); }
+  [[nodiscard]] std::ptrdiff_t fill_back() const noexcept {
+    std::ptrdiff_t back = 0;
+    for (const auto& phase : k_.fill) back = std::max(back, phase.last());
+    return back;
+  }
+  [[nodiscard]] wave_tape<T> tape(std::ptrdiff_t past) const { return {past + 2 * wave_ahead_, 2 * wave_ahead_}; }
+  [[nodiscard]] T turn_velocity() const noexcept {
+    return turns_ ? static_cast<T>(k_.turn.free().velocity[0]) - k_.turn_rest * last_force_ : T(0);
+  }
+
+  void begin_block() noexcept {
+    block_end_ = now_ + k_.block;
+    make_room();
+    send();
+    receive();
+    fill_up();
+  }
+
+  void make_room() noexcept {
+    const auto waves_end = block_end_ / k_.stride + 2 * wave_ahead_;
+    force_.turn(now_, block_end_ + 1);
+    velocity_.turn(now_, block_end_ + static_cast<std::ptrdiff_t>(k_.local.size()) + 1);
+    echoes_.turn(now_ / k_.stride, waves_end);
+    for (std::size_t j = 0; j < 2; ++j) {
+      out_[j].turn(sent_, waves_end);
+      back_[j].turn(sent_, waves_end);
+    }
+  }
+
+  /// The forces known by now leave to both sides, together with what came back from the other.
+  void send() noexcept {
+    const auto known = now_ - k_.look_ahead();  // forces before `now_` are known
+    const auto end = known <= 0 ? 0 : (known - 1) / k_.stride + 1;
+    const auto count = end - sent_;
+    if (count <= 0) return;
+    T* to[2] = {out_[0].at(sent_), out_[1].at(sent_)};
+    if (k_.thin.empty()) std::copy_n(force_.at(sent_), count, to[0]);
+    else {
+      std::fill_n(to[0], count, T(0));
+      detail::add_thinned(k_.thin, std::as_const(force_).at(sent_ * k_.stride), k_.stride, to[0], count);
+    }
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const T force = to[0][i];
+      to[0][i] = force + *back_[1].at(sent_ + i);
+      to[1][i] = force + *back_[0].at(sent_ + i);
+    }
+    sent_ = end;
+  }
+
+  /// Echoes as far ahead as the coming block needs them.
+  void receive() noexcept {
+    const auto now_end = (block_end_ - 1) / k_.stride + 1, end = now_end + k_.fill_ahead();
+    const auto from = received_[1 - k_.near];
+    receive(k_.near, k_.direct.empty() ? end : now_end);
+    receive(1 - k_.near, end);
+    const T *near = back_[k_.near].at(from), *far = back_[1 - k_.near].at(from);
+    T* sum = echoes_.at(from);
+    for (std::ptrdiff_t i = 0; i < end - from; ++i) sum[i] = k_.direct.empty() ? near[i] + far[i] : far[i];
+  }
+  void receive(std::size_t j, std::ptrdiff_t end) noexcept {
+    const auto from = std::exchange(received_[j], end);
+    if (end > from) detail::add_filtered(k_.echo[j], std::as_const(out_[j]).at(from), back_[j].at(from), end - from);
+  }
+
+  /// From the waves' rate to the contact's.
+  void fill_up() noexcept {
+    T* velocity = velocity_.at(now_);
+    if (!k_.direct.empty()) detail::add_filtered(k_.direct, std::as_const(out_[k_.near]).at(now_), velocity, k_.block);
+    if (k_.stride == 1) return detail::add_filtered(k_.fill.front(), std::as_const(echoes_).at(now_), velocity, k_.block);
+    const auto count = k_.block / k_.stride;
+    for (std::size_t phase = 0; phase < k_.fill.size(); ++phase) {
+      std::fill_n(scratch_.begin(), count, T(0));
+      detail::add_filtered(k_.fill[phase], std::as_const(echoes_).at(now_ / k_.stride), scratch_.data(), count);
+      for (std::ptrdiff_t i = 0; i < count; ++i) velocity[i * k_.stride + static_cast<std::ptrdiff_t>(phase)] += scratch_[static_cast<std::size_t>(i)];
+    }
+  }
+
+  wave_kernels<T> k_;
+  std::ptrdiff_t wave_ahead_ = 0, now_ = 0, block_end_ = 0, sent_ = 0;
+  std::array<std::ptrdiff_t, 2> received_{};
+  wave_tape<T> force_, velocity_, echoes_;
+  std::array<wave_tape<T>, 2> out_, back_;
+  T turn_mobility_ = k_.turn_mobility_m_Ns(), mobility_ = k_.mobility_m_Ns(), last_force_ = 0;
+  bool turns_ = k_.turn.mobility(0, 0) > 0;
+  std::vector<T> scratch_ = std::vector<T>(static_cast<std::size_t>(k_.block));
+};
+
+}  // namespace rosin

@@ -1,0 +1,139 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// A stroke on the travelling-wave string: any law of friction, any motion of the rod, and what the sensors at the ends
+// would record. The take has the same form, the same clock and the same low-pass as one of the modal reference
+// (modal_stroke.hpp), so the two can be set against each other sample by sample. The force on end j is
+//
+//     F_j = D_j s_j / G,       G = (1 + 2K) / (1 + K),
+//
+// the wave that left for it, one passage later (specification sheet, 1.4).
+//
+#pragma once
+
+#include <rosin/propagate/dispersion.hpp>
+#include <rosin/simulate/modal_stroke.hpp>
+#include <rosin/simulate/wave_design.hpp>
+#include <rosin/simulate/wave_string.hpp>
+
+namespace rosin {
+
+struct wave_stroke {
+  double position = 0.3;  ///< distance from the near end / length
+  double duration_s = 0.36;
+};
+
+namespace detail {
+
+/// From s_j to the samples of the force on end j, at the waves' rate: passage, 1 / G, straight lines, low-pass.
+[[nodiscard]] inline fir end_kernel(const wave_design& d, std::size_t j, const string_parameters& string, const modal_low_pass& low_pass) {
+  const transmission pass{d.end_delay_s[j], string.stiffness_s2(), string.loss};
+  const auto wanted = [&](double f) {
+    const double w = 2 * std::numbers::pi * f;
+    return pass(f) * straight_line_weight(w, d.kernels.step_s) / force_factor(w, string.stiffness_s2());
+  };
+  const auto lags = lags_of_passage(pass.delay_s, pass.stiffness_s2, d.limits, d.wave_rate_Hz);
+  fir low{-static_cast<int>(low_pass.half_width_s() * d.wave_rate_Hz), {}};
+  for (int n = low.first; n <= -low.first; ++n) low.taps.push_back(low_pass(n / d.wave_rate_Hz) / d.wave_rate_Hz);
+  fir passage = sample_response(wanted, d.limits, d.wave_rate_Hz, lags.first, lags.last);
+  const double sum = std::accumulate(passage.taps.begin(), passage.taps.end(), 0.0);
+  for (double& tap : passage.taps) tap += (1 - sum) / static_cast<double>(passage.taps.size());
+  return convolved(passage, low, 1);
+}
+
+/// What the run leaves behind: the signals at every step, and the waves sent at every step of theirs.
+struct wave_record {
+  stroke_steps at_steps;  ///< near, far: unused
+  std::array<std::vector<double>, 2> sent;
+
+  wave_record(std::size_t steps, std::size_t waves) : at_steps{steps} {
+    for (auto& s : sent) s.assign(waves, 0.0);
+  }
+};
+
+template <class T>
+void copy_waves(const wave_string<T>& string, wave_record& out, std::ptrdiff_t& from) noexcept {
+  const auto end = std::min(string.waves(), static_cast<std::ptrdiff_t>(out.sent[0].size()));
+  for (; from < end; ++from)
+    for (std::size_t j = 0; j < 2; ++j) out.sent[j][static_cast<std::size_t>(from)] = static_cast<double>(string.wave(j, from));
+}
+
+/// The run itself: no allocation. Stops at the end of the record; true if it stayed finite.
+template <class T, class Law, class Motion>
+bool run_waves(wave_string<T>& string, Law& law, const Motion& motion, wave_record& out, modal_take& take, std::size_t first) noexcept {
+  auto& s = out.at_steps;
+  const double step_s = string.kernels().step_s;
+  std::size_t slipped = 0;
+  std::ptrdiff_t copied = 0, block = 0;
+  bool before = false;
+  for (std::size_t i = first; i < s.force.size(); ++i) {
+    const rod_state rod = motion(static_cast<double>(i - first) * step_s);
+    const auto answer = law(string.line(rod));
+    const auto state = string.apply(answer.force_N);
+    s.centre[i] = static_cast<double>(state.centre_m_s), s.torsion[i] = static_cast<double>(state.torsion_m_s);
+    s.force[i] = static_cast<double>(answer.force_N), s.rod[i] = rod.velocity_m_s;
+    s.temperature[i] = static_cast<double>(answer.temperature_rise_K);
+    take.unconverged += answer.converged ? 0U : 1U;
+    take.slips += answer.slipping && !before ? 1U : 0U;
+    before = answer.slipping;
+    slipped += before && i > s.force.size() / 2 ? 1U : 0U;
+    if (++block < string.kernels().block) continue;
+    block = 0;
+    copy_waves(string, out, copied);
+    if (!(std::abs(s.centre[i]) < 1e6)) return false;
+  }
+  take.slipping = static_cast<double>(slipped) / static_cast<double>(s.force.size() - s.force.size() / 2);
+  return true;
+}
+
+[[nodiscard]] inline std::vector<double> end_force(const fir& kernel, const std::vector<double>& sent, std::size_t samples, std::ptrdiff_t stride) {
+  std::vector<double> out(samples, 0.0);
+  const auto size = static_cast<std::ptrdiff_t>(sent.size());
+  for (std::size_t n = 0; n < samples; ++n) {
+    const auto at = static_cast<std::ptrdiff_t>(n) * stride - kernel.first;  // newest wave that counts
+    const auto begin = std::max<std::ptrdiff_t>(0, at - size + 1), end = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(kernel.taps.size()), at + 1);
+    double sum = 0;
+    for (auto k = begin; k < end; ++k) sum += kernel.taps[static_cast<std::size_t>(k)] * sent[static_cast<std::size_t>(at - k)];
+    out[n] = sum;
+  }
+  return out;
+}
+
+}  // namespace detail
+
+/// Simulates a stroke on kernels that design_wave() has made for this rig, position and settings.
+template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
+[[nodiscard]] outcome<modal_take> simulate_wave_stroke(const wave_design& design, const modal_rig& rig, Law law, Motion motion, double duration_s,
+                                                       const wave_settings& settings) {
+  if (const auto problem = problem_with_duration(duration_s, settings.as_modal()); !problem.empty()) return failure{problem};
+  const auto low_pass = settings.low_pass();
+  const modal_decimator decimate{low_pass, settings.step_s(), settings.oversampling};
+  const std::array<fir, 2> ends{detail::end_kernel(design, 0, rig.string, low_pass), detail::end_kernel(design, 1, rig.string, low_pass)};
+  const auto stride = design.kernels.stride;
+  const auto samples = static_cast<std::size_t>(std::lround(duration_s * settings.sample_rate_Hz));
+  const auto ahead = static_cast<std::size_t>(std::max(0, -std::min(ends[0].first, ends[1].first))) * static_cast<std::size_t>(stride);
+  const auto reach = decimate.reach(), late = static_cast<std::size_t>(design.kernels.look_ahead() + 2 * design.kernels.block);
+  const auto steps = (samples - 1) * static_cast<std::size_t>(settings.oversampling) + 1 + reach + std::max(reach, ahead + late);
+  detail::wave_record record{steps, steps / static_cast<std::size_t>(stride) + 1};
+  modal_take take{.sample_rate_Hz = settings.sample_rate_Hz};
+  wave_string<T> string{wave_kernels<T>{design.kernels}};
+  law.reset();
+  if (!detail::run_waves(string, law, motion, record, take, reach)) return failure{"simulation: the string's velocity grew without bound"};
+  detail::sample_steps(take, record.at_steps, decimate, {});
+  for (auto* signal : {&take.contact_force_N, &take.centre_velocity_m_s, &take.torsion_velocity_m_s, &take.rod_velocity_m_s, &take.temperature_rise_K})
+    signal->resize(std::min(signal->size(), samples));
+  take.force_near_N = detail::end_force(ends[0], record.sent[0], samples, settings.oversampling / stride);
+  take.force_far_N = detail::end_force(ends[1], record.sent[1], samples, settings.oversampling / stride);
+  return take;
+}
+
+/// The same from a rig; fails where rig, stroke or settings make no sense.
+template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
+[[nodiscard]] outcome<modal_take> simulate_wave_stroke(const modal_rig& rig, Law law, Motion motion = {}, wave_stroke stroke = {},
+                                                       const wave_settings& settings = {}) {
+  const auto design = design_wave(rig, stroke.position, settings);
+  if (!design) return failure{design.error()};
+  return simulate_wave_stroke<T>(*design, rig, law, motion, stroke.duration_s, settings);
+}
+
+}  // namespace rosin
