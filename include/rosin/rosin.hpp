@@ -102,6 +102,7 @@
 #include <rosin/friction/friction_curves.hpp>
 #include <rosin/friction/friction_law.hpp>
 #include <rosin/friction/slip_phases.hpp>
+#include <rosin/friction/slip_samples.hpp>
 #include <rosin/friction/thermal_plastic.hpp>
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/friction/yield_curve.hpp>
@@ -118,6 +119,23 @@
 #include <rosin/simulate/modal_take.hpp>
 #include <rosin/simulate/profiled_rod.hpp>
 #include <rosin/simulate/random_rig.hpp>
+#include <rosin/simulate/wave_design.hpp>
+#include <rosin/simulate/wave_echo.hpp>
+#include <rosin/simulate/wave_kernels.hpp>
+#include <rosin/simulate/wave_local.hpp>
+#include <rosin/simulate/wave_loop.hpp>
+#include <rosin/simulate/wave_settings.hpp>
+#include <rosin/simulate/wave_string.hpp>
+#include <rosin/simulate/wave_stroke.hpp>
+
+#include <rosin/diagnose/contact_effects.hpp>
+#include <rosin/diagnose/contact_ripple.hpp>
+#include <rosin/diagnose/contact_slip_effects.hpp>
+#include <rosin/diagnose/contact_stick.hpp>
+#include <rosin/diagnose/contact_stick_effects.hpp>
+#include <rosin/diagnose/contact_take.hpp>
+#include <rosin/diagnose/contact_width.hpp>
+#include <rosin/diagnose/friction_laws.hpp>
 
 #include <rosin/report/csv.hpp>
 #include <rosin/report/npy.hpp>

@@ -1,0 +1,74 @@
+// The travelling-wave string against its modes, with friction in the loop: the first twenty periods of strokes that are not
+// chaotic (in others two simulations of any kind part after some slips, the modal one from itself at another rate).
+#include <doctest/doctest.h>
+
+#include <rosin/friction/thermal_plastic.hpp>
+#include <rosin/friction/velocity_curve.hpp>
+#include <rosin/friction/yield_curve_design.hpp>
+#include <rosin/simulate/profiled_rod.hpp>
+#include <rosin/simulate/wave_stroke.hpp>
+
+namespace {
+
+const rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                      .tension_N = 72.5,
+                                      .fundamental_Hz = 660,
+                                      .bending_stiffness_Nm2 = 4.7e-5,
+                                      .loss = {.quality = 1000}},
+                           .torsion = {7, 3.5, 15}};
+constexpr double twenty_periods_s = 20 / 660.0;
+
+/// Of Eq. (12): rms of the difference over rms of the signal without its mean.
+double delta(const std::vector<double>& a, const std::vector<double>& b) {
+  double mean = 0, difference = 0, power = 0;
+  for (const double x : b) mean += x / static_cast<double>(b.size());
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    difference += (a[i] - b[i]) * (a[i] - b[i]);
+    power += (b[i] - mean) * (b[i] - mean);
+  }
+  return std::sqrt(difference / power);
+}
+
+rosin::profiled_rod ramp(double rise_s, double normal_N) { return {{}, {{0, 0}, {rise_s, 0.2}}, {{0, normal_N}}}; }
+
+template <class Law>
+void compare(const Law& law, const rosin::profiled_rod& rod, double position) {
+  const rosin::wave_settings settings{.pass_Hz = 20e3, .stop_Hz = 30e3};
+  const auto modes = rosin::simulate_stroke(rig, law, rod, {position, twenty_periods_s}, settings.as_modal());
+  const auto waves = rosin::simulate_wave_stroke(rig, law, rod, {position, twenty_periods_s}, settings);
+  REQUIRE(modes);
+  REQUIRE_MESSAGE(waves, waves.error());
+  CHECK(waves->unconverged == 0);
+  CHECK(waves->slips == modes->slips);
+  CHECK(waves->slips > 0);
+  const double force = delta(waves->contact_force_N, modes->contact_force_N), velocity = delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s);
+  MESSAGE("position ", position, ": Delta of force ", force, ", of velocity ", velocity, ", ", waves->slips, " slips");
+  CHECK(force <= 0.01);
+  CHECK(velocity <= 0.01);
+  CHECK(delta(waves->force_near_N, modes->force_near_N) <= 0.01);
+  CHECK(delta(waves->force_far_N, modes->force_far_N) <= 0.01);
+}
+
+rosin::thermal_plastic<> thermal(double normal_N) {
+  const rosin::contact_heat_parameters<> heat;
+  return {*rosin::design_yield_curve(rosin::two_exponential_curve<>{}, heat.without_string(), normal_N), heat};
+}
+
+}  // namespace
+
+TEST_CASE("velocity curve: Delta at most 0.01 over twenty periods") {
+  compare(rosin::velocity_curve{rosin::two_exponential_curve<>{}}, ramp(0.03, 0.6), 0.21);
+}
+
+TEST_CASE("thermal friction: Delta at most 0.01 over twenty periods") { compare(thermal(1.2), ramp(0.03, 1.2), 0.3); }
+
+TEST_CASE("at twice the rate of the contact a stroke comes closer to what it is at eight times") {
+  const auto at = [](int oversampling) {
+    const rosin::wave_settings settings{.sample_rate_Hz = 64000, .oversampling = oversampling, .pass_Hz = 20e3, .stop_Hz = 30e3};
+    return *rosin::simulate_wave_stroke(rig, thermal(1.2), ramp(0.03, 1.2), {0.3, twenty_periods_s}, settings);
+  };
+  const auto finest = at(64), fine = at(16), coarse = at(8);
+  const double one = delta(coarse.contact_force_N, finest.contact_force_N), half = delta(fine.contact_force_N, finest.contact_force_N);
+  MESSAGE("Delta to 4.1 MHz: ", one, " at 512 kHz, ", half, " at 1.02 MHz");
+  CHECK(half < 0.75 * one);
+}

@@ -1,0 +1,63 @@
+#include <rosin/simulate/wave_design.hpp>
+
+#include <doctest/doctest.h>
+
+#include <rosin/simulate/wave_string.hpp>
+
+namespace {
+
+const rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                      .tension_N = 72.5,
+                                      .fundamental_Hz = 660,
+                                      .bending_stiffness_Nm2 = 4.7e-5,
+                                      .loss = {.quality = 1000}},
+                           .torsion = {7, 3.5, 15}};
+
+}  // namespace
+
+TEST_CASE("kernels fit together: nothing is asked for before it is known") {
+  for (const double position : {0.05, 0.137, 0.3, 0.8})
+    for (const int oversampling : {2, 8}) {
+      CAPTURE(position);
+      CAPTURE(oversampling);
+      const auto design = rosin::design_wave(rig, position, {.oversampling = oversampling, .band_Hz = 60e3});
+      REQUIRE_MESSAGE(design, design.error());
+      const auto& k = design->kernels;
+      CHECK(k.block >= 1);
+      CHECK(k.block % k.stride == 0);
+      CHECK(k.fill.size() == static_cast<std::size_t>(k.stride));
+      const auto soonest = std::min(k.echo[0].first, k.echo[1].first);
+      if (k.stride == 1) CHECK(k.block <= std::min(soonest, k.direct.first));
+      else CHECK(k.block / k.stride + k.fill_ahead() + (k.look_ahead() + k.stride) / k.stride - 1 <= soonest);
+    }
+}
+
+TEST_CASE("a force that stays moves the string nowhere in the end") {
+  for (const int oversampling : {1, 4}) {
+    const auto design = rosin::design_wave(rig, 0.3, {.oversampling = oversampling, .band_Hz = 60e3});
+    REQUIRE(design);
+    rosin::wave_string<double> string{design->kernels};
+    double place = 0, early = 0;
+    const int steps = static_cast<int>(0.6 / design->kernels.step_s);
+    for (int n = 0; n < steps; ++n) {
+      place += string.apply(1).centre_m_s * design->kernels.step_s;
+      if (n == steps / 2) early = place;
+    }
+    CHECK(place == doctest::Approx(rosin::static_compliance_m_N(rig.string, 0.3)).epsilon(0.01));
+    CHECK(place == doctest::Approx(early).epsilon(0.01));
+  }
+}
+
+TEST_CASE("impossible rigs and places are refused with the reason") {
+  CHECK(rosin::design_wave(rig, 1.2).error().find("position") != std::string::npos);
+  CHECK(rosin::design_wave(rig, 0.003).error().find("end") != std::string::npos);
+  auto bad = rig;
+  bad.torsion.quality = -3;
+  CHECK(rosin::design_wave(bad, 0.3).error().find("torsion") != std::string::npos);
+  bad = rig;
+  bad.string.loss.quality = -100;
+  CHECK(rosin::design_wave(bad, 0.3).error().find("Q") != std::string::npos);
+  bad = rig;
+  bad.string.tension_N = std::nan("");
+  CHECK_FALSE(rosin::design_wave(bad, 0.3));
+}

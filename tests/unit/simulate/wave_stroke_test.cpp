@@ -1,0 +1,91 @@
+#include <rosin/simulate/wave_stroke.hpp>
+
+#include <doctest/doctest.h>
+
+#include <rosin/friction/velocity_curve.hpp>
+#include <rosin/simulate/profiled_rod.hpp>
+
+namespace {
+
+const rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                      .tension_N = 72.5,
+                                      .fundamental_Hz = 660,
+                                      .bending_stiffness_Nm2 = 4.7e-5,
+                                      .loss = {.quality = 1000}},
+                           .torsion = {7, 3.5, 15}};
+
+/// A force that does not depend on the string: steps of random height, each held for a while.
+struct imposed_force {
+  using scalar = double;
+  std::uint64_t state = 1;
+  double force = 0;
+  int count = 0;
+  rosin::contact_force<double> operator()(const rosin::load_line<double>& line) noexcept {
+    if (count++ % static_cast<int>(1.6e-5 / line.step_s) == 0) {
+      state = state * 6364136223846793005U + 1442695040888963407U;
+      force = static_cast<double>(state >> 11U) / 9007199254740992.0 - 0.3;
+    }
+    return {.force_N = force};
+  }
+  void reset() noexcept { *this = {}; }
+};
+
+double delta(const std::vector<double>& a, const std::vector<double>& b) {
+  double difference = 0, power = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    difference += (a[i] - b[i]) * (a[i] - b[i]);
+    power += b[i] * b[i];
+  }
+  return std::sqrt(difference / power);
+}
+
+}  // namespace
+
+TEST_CASE("under a given force the string moves, and pulls at its ends, as its modes do") {
+  for (const double position : {0.3, 0.12}) {
+    CAPTURE(position);
+    const rosin::wave_settings settings{.oversampling = 4, .pass_Hz = 20e3, .stop_Hz = 30e3};
+    const auto modes = rosin::simulate_stroke(rig, imposed_force{}, rosin::steady_rod{}, {position, 0.02}, settings.as_modal());
+    const auto waves = rosin::simulate_wave_stroke(rig, imposed_force{}, rosin::steady_rod{}, {position, 0.02}, settings);
+    REQUIRE(modes);
+    REQUIRE_MESSAGE(waves, waves.error());
+    REQUIRE(waves->size() == modes->size());
+    CHECK(delta(waves->contact_force_N, modes->contact_force_N) < 1e-6);
+    CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 2e-3);
+    CHECK(delta(waves->torsion_velocity_m_s, modes->torsion_velocity_m_s) < 5e-3);
+    CHECK(delta(waves->force_near_N, modes->force_near_N) < 2e-3);
+    CHECK(delta(waves->force_far_N, modes->force_far_N) < 2e-3);
+  }
+}
+
+TEST_CASE("a stroke in single precision follows the one in double") {
+  const rosin::profiled_rod rod{{}, {{0, 0}, {0.005, 0.2}}, {{0, 0.2}}};
+  const rosin::wave_settings settings{.sample_rate_Hz = 64000, .oversampling = 4};
+  const auto exact = rosin::simulate_wave_stroke<double>(rig, rosin::velocity_curve{rosin::two_exponential_curve<double>{}}, rod, {0.3, 0.005}, settings);
+  const auto single = rosin::simulate_wave_stroke<float>(rig, rosin::velocity_curve{rosin::two_exponential_curve<float>{}}, rod, {0.3, 0.005}, settings);
+  REQUIRE(exact);
+  REQUIRE(single);
+  CHECK(exact->unconverged == 0);
+  CHECK(exact->slips > 0);
+  CHECK(delta(single->contact_force_N, exact->contact_force_N) < 1e-2);
+}
+
+TEST_CASE("what makes no sense is refused; a rod off the string does nothing") {
+  const rosin::velocity_curve law{rosin::two_exponential_curve<>{}};
+  CHECK_FALSE(rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{}, {0.3, -1}));
+  CHECK_FALSE(rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{}, {1.0, 0.1}));
+  const auto still = rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{.normal_force_N = 0}, {0.3, 0.005}, {.oversampling = 1});
+  REQUIRE(still);
+  for (const double f : still->force_near_N) CHECK(f == 0);
+}
+
+TEST_CASE("a string whose velocity has no bound is reported, not returned") {
+  struct pump {
+    using scalar = double;
+    rosin::contact_force<double> operator()(const rosin::load_line<double>& line) noexcept {
+      return {.force_N = 10 * line.free_velocity_m_s / line.mobility_m_Ns + 1};
+    }
+    void reset() noexcept {}
+  };
+  CHECK(rosin::simulate_wave_stroke(rig, pump{}, rosin::steady_rod{}, {0.3, 0.1}, {.oversampling = 1}).error().find("without bound") != std::string::npos);
+}
