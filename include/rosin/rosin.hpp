@@ -119,6 +119,7 @@
 #include <rosin/simulate/modal_take.hpp>
 #include <rosin/simulate/profiled_rod.hpp>
 #include <rosin/simulate/random_rig.hpp>
+#include <rosin/simulate/regime.hpp>
 #include <rosin/simulate/wave_design.hpp>
 #include <rosin/simulate/wave_echo.hpp>
 #include <rosin/simulate/wave_kernels.hpp>

@@ -121,6 +121,7 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   }
   const auto other = thermal ? fit_thermal(bench.records(), bench.floor()) : fit_velocity_curve(bench.records(), bench.floor());
   detail::settle_hypothesis(bench, other.fit, h);
+  h.decided = other.heat_memory || (other.rates.exchange_1_m < 1.1e4 && other.rates.conduction_1_s < 4.5e3 && other.rates.renewal < 9e3);
   if (thermal && !other.heat_memory)
     h.parameters = {{"conduction_1_s", other.rates.conduction_1_s, 0.2 * other.rates.conduction_1_s}, {"renewal", other.rates.renewal, 0.3 * other.rates.renewal + 100}, {"capacity_power", other.rates.capacity_power, 0.5}, {"exchange_1_m", other.rates.exchange_1_m, 0.2 * other.rates.exchange_1_m + 100}};
   if (thermal && other.heat_memory)

@@ -154,7 +154,7 @@ public:
       const auto which = d.rows.size();
       d.rows.push_back(pick(marked_[which], target, shared, {std::vector<double>(target.size(), 1.0)}));
     }
-    d.add_bound(-3, 0.3);
+    d.add_bound(-4, 0.5);
     d.add_bound(-1.5, 1.5);
     for (int k = 0; torsion && k < 3; ++k) d.add_bound(loose ? -1.0 : -2 * model_.torsion_tolerance[k], loose ? 1.0 : 2 * model_.torsion_tolerance[k]);
     include_found(d);

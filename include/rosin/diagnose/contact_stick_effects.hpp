@@ -96,8 +96,9 @@ struct family_fit {
 };
 
 /// Gauss-Newton on a family of transfer functions added to the declared equation; theta stays between `low` and `high`.
+/// `other_compliance`: the terms C1, C3 are not free, C1 is this (in micrometres a newton) and C3 zero.
 [[nodiscard]] inline family_fit fit_family(stick_bench& bench, const transfer_family& family, Eigen::VectorXd theta, double size, const Eigen::VectorXd& low,
-                                           const Eigen::VectorXd& high, int steps) {
+                                           const Eigen::VectorXd& high, int steps, std::optional<double> other_compliance = {}) {
   family_fit out{.theta = theta, .size = size, .covariance = {}};
   for (int step = 0; step <= steps; ++step) {
     stick_design d = bench.declared();
@@ -110,6 +111,7 @@ struct family_fit {
         d.add_shared(t, record.force_through([&](double f) { return out.size / 4e-3 * (family(up, f) - family(down, f)); }));
       }
     }
+    if (other_compliance) d.bounds[0] = {*other_compliance, *other_compliance}, d.bounds[1] = {0, 0};
     d.add_bound(0, 1e30);
     for (Eigen::Index k = 0; k < theta.size(); ++k) d.add_bound(-0.3, 0.3);
     const Eigen::Index first = d.rows.front().shared.cols() - theta.size() - 1;
@@ -187,7 +189,7 @@ struct family_fit {
   const double f0 = std::exp(found.theta[0]), q = std::exp(found.theta[1]), mass = found.size > 0 ? 1 / found.size : 1e9;
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   if (sd.size() == 3) h.parameters = {{"frequency_Hz", f0, f0 * sd[1]}, {"q", q, q * sd[2]}, {"mass_kg", mass, mass * mass * sd[0]}};
-  h.decided = found.size > 0 && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1;
+  h.decided = found.size > 0 && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 2.6 && q < 79;  // inside the range that was searched
   return h;
 }
 
@@ -199,6 +201,7 @@ struct family_fit {
     const std::complex<double> s(0, 2 * std::numbers::pi * f);
     return -1e-6 * s / (1.0 + s * std::exp(theta[0]));
   };
+  constexpr double other = 0.7;  // micrometres a newton, less: what contacts are known to yield besides, and how sure that is
   const detail::explained quick(bench.declared(), bench.fit().solution);
   double best = 0, delay_best = 1e-6, size_best = 1;
   for (double delay = 1.25e-7; delay < 5e-5; delay *= 2) {
@@ -210,11 +213,11 @@ struct family_fit {
   }
   if (!(best > 0)) return detail::nothing(bench, h);
   const auto found = detail::fit_family(bench, family, Eigen::VectorXd::Constant(1, std::log(delay_best)), size_best,
-                                       Eigen::VectorXd::Constant(1, std::log(3e-8)), Eigen::VectorXd::Constant(1, std::log(1e-4)), 5);
+                                       Eigen::VectorXd::Constant(1, std::log(3e-8)), Eigen::VectorXd::Constant(1, std::log(1e-4)), 5, -other);
   detail::settle_hypothesis(bench, found.fit, h);
   const double stiffness = found.size > 0 ? 1e6 / found.size : 1e12, delay = std::exp(found.theta[0]);
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-  const double doubt = sd.size() == 2 ? std::hypot(sd[0], 0.7) : 1e3;  // what contacts are known to yield besides
+  const double doubt = sd.size() == 2 ? std::hypot(sd[0], other) : 1e3;
   h.parameters = {{"bristle_stiffness_N_m", stiffness, stiffness * stiffness * 1e-6 * doubt}, {"bristle_delay_s", delay, sd.size() == 2 ? delay * sd[1] : delay}};
   h.decided = found.size > 3 * doubt;
   return h;

@@ -50,10 +50,13 @@ public:
 
   [[nodiscard]] std::size_t size() const noexcept { return samples_; }
 
+  /// Transfer functions are asked at 0 and multiples of this.
+  [[nodiscard]] double bin_Hz() const noexcept { return rate_Hz_ / static_cast<double>(fft_.size()); }
+
   /// The signal through a transfer function of the frequency in Hz and the window; the transfer function is asked inside it only.
   template <class Transfer>
   [[nodiscard]] std::vector<double> through(const smooth_window& window, const Transfer& transfer) {
-    const double step = rate_Hz_ / static_cast<double>(fft_.size());
+    const double step = bin_Hz();
     for (std::size_t k = 0; k < bins_.size(); ++k) {
       const double f = static_cast<double>(k) * step, w = window(f);
       work_[k] = w > 0 ? bins_[k] * (w * std::complex<double>(transfer(f))) : std::complex<double>(0);

@@ -55,6 +55,15 @@ public:
   [[nodiscard]] std::vector<double> force_through(const Transfer& transfer) {
     return force_.through(window(), transfer);
   }
+  /// Two columns for what the contact yields besides: compliance_unit s f, and the same times (frequency / corner)^2. Kept once made.
+  static constexpr double compliance_unit = 1e-6, compliance_corner_Hz = 5e4;
+  [[nodiscard]] const std::vector<std::vector<double>>& compliance() {
+    if (!compliance_.empty()) return compliance_;
+    const auto first = [](double f) { return std::complex<double>(0, 2 * std::numbers::pi * f * compliance_unit); };
+    compliance_.push_back(force_through(first));
+    compliance_.push_back(force_through([&](double f) { return first(f) * std::pow(f / compliance_corner_Hz, 2); }));
+    return compliance_;
+  }
   [[nodiscard]] std::span<const double> known(std::span<const double> samples) const { return samples.subspan(begin_, last(take_) - begin_); }
 
 private:
@@ -74,6 +83,7 @@ private:
   std::size_t begin_;
   contact_signal<> force_;
   std::vector<double> relative_;
+  std::vector<std::vector<double>> compliance_;
 };
 
 /// Samples of a record at which the string sticks if its surface moves as `relative_m_s` says; a window's reach inside.
@@ -86,12 +96,12 @@ private:
   return all;
 }
 
-/// Picks the marked samples of columns of samples.
+/// Picks every other of the marked samples of columns of samples: the window leaves no more than that of information.
 [[nodiscard]] inline stick_rows pick(const std::vector<char>& marked, const std::vector<double>& target, const std::vector<std::vector<double>>& shared,
                                      const std::vector<std::vector<double>>& own) {
   stick_rows rows;
   for (std::size_t i = 0; i < marked.size(); ++i)
-    if (marked[i]) rows.sample.push_back(i);
+    if (marked[i] && i % 2 == 0) rows.sample.push_back(i);
   const auto n = static_cast<Eigen::Index>(rows.sample.size());
   const auto take = [&](const std::vector<double>& from, auto to) {
     for (Eigen::Index i = 0; i < n; ++i) to[i] = from[rows.sample[static_cast<std::size_t>(i)]];

@@ -66,7 +66,8 @@ inline constexpr double student_freedom = 4;
   }
   if (!(count[0] > 0) || !(sum[0] > 0)) return 1;
   double total = 1;
-  for (std::size_t lag = 1; lag <= lags && count[lag] > 50; ++lag) total += 2 * std::abs(sum[lag] / count[lag]) / (sum[0] / count[0]);
+  for (std::size_t lag = 1; lag <= lags; ++lag)
+    if (count[lag] > 50) total += 2 * std::abs(sum[lag] / count[lag]) / (sum[0] / count[0]);
   return std::max(1.0, total);
 }
 
@@ -117,7 +118,7 @@ struct stacked {
   Eigen::MatrixXd hessian;
   stick_solution out;
   out.scale = std::max(floor, std::sqrt(s.y.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, n))));
-  for (int pass = 0; pass < 12; ++pass) {
+  for (int pass = 0; pass < 20; ++pass) {
     const Eigen::MatrixXd wx = weight.asDiagonal() * s.x;
     hessian = s.x.transpose() * wx;
     Eigen::VectorXd gradient = wx.transpose() * s.y;
@@ -128,11 +129,13 @@ struct stacked {
     hessian.diagonal() *= 1 + 1e-12;
     value = hessian.ldlt().solve(gradient);
     residual = s.y - s.x * value;
+    const double before = out.scale;
     for (int inner = 0; inner < 3; ++inner) {
       const double s2 = out.scale * out.scale;
       weight = ((residual.array().square() / s2 + detail::student_freedom).inverse() * (detail::student_freedom + 1)).matrix();
       out.scale = std::max(floor, std::sqrt(weight.dot(residual.cwiseAbs2()) / static_cast<double>(n)));
     }
+    if (pass > 2 && std::abs(out.scale - before) < 1e-3 * before) break;
   }
   out.shared = value.head(shared);
   Eigen::Index at = shared;

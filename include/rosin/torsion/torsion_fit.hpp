@@ -37,12 +37,16 @@ enum class torsion_damping { constant_q, viscous_modes };
 /// Surface velocity for 1 N at the contact of a take.
 struct torsion_at_contact {
   torsion_waveguide guide;
+  torsion_modes modes;
   torsion_damping damping = torsion_damping::constant_q;
+  double rest_m_N = 0;  ///< compliance of the modes beyond those that are summed
 
   torsion_at_contact(const stick_take& take, const torsion_values& v, torsion_damping d)
-      : guide{torsion_of(take.delay_s, take.impedance_Ns_m, v.speed_ratio, v.impedance_ratio, v.q)}, damping{d} {}
+      : guide{torsion_of(take.delay_s, take.impedance_Ns_m, v.speed_ratio, v.impedance_ratio, v.q)},
+        modes{guide.delay_s, guide.impedance_Ns_m, guide.q, 40}, damping{d}, rest_m_N{d == torsion_damping::viscous_modes ? modes.rest_m_N() : 0.0} {}
   [[nodiscard]] std::complex<double> operator()(double f) const noexcept {
-    return damping == torsion_damping::constant_q ? guide(f) : torsion_modes{guide.delay_s, guide.impedance_Ns_m, guide.q, 40}(f);
+    if (damping == torsion_damping::constant_q) return guide(f);
+    return modes(f) + std::complex<double>(0, 2 * std::numbers::pi * f * rest_m_N);
   }
 };
 
@@ -63,14 +67,6 @@ namespace detail {
 
 /// What neither convention of damping nor C1, C3 absorb, in the logarithms: measured on simulated rigs of both conventions.
 inline const Eigen::Vector3d torsion_model_error{0.0007, 0.008, 0.02};
-
-inline constexpr double compliance_unit = 1e-6, compliance_corner_Hz = 5e4;  ///< columns of comparable size
-
-[[nodiscard]] inline std::vector<std::vector<double>> compliance_columns(stick_record& record) {
-  const auto first = [](double f) { return std::complex<double>(0, 2 * std::numbers::pi * f * compliance_unit); };
-  const auto third = [&](double f) { return first(f) * std::pow(f / compliance_corner_Hz, 2); };
-  return {record.force_through(first), record.force_through(third)};
-}
 
 inline void add_to(std::vector<double>& to, const std::vector<double>& what, double factor = 1) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * what[i];
@@ -113,7 +109,7 @@ struct torsion_state {
 /// The likeliest starting points, best first.
 [[nodiscard]] inline std::vector<torsion_values> torsion_starts(stick_record& record, std::size_t wanted) {
   const std::size_t begin = record.begin(), end = std::min(record.end(), begin + 12000);
-  const auto slope = compliance_columns(record)[0];
+  const auto& slope = record.compliance()[0];
   std::vector<std::pair<double, torsion_values>> found;
   for (const double q : {13.0, 35.0})
     for (double speed = 4.2; speed < 11.5; speed *= 1.02) {
@@ -136,7 +132,7 @@ inline void torsion_step(std::vector<stick_record>& records, torsion_state& stat
   const Eigen::Vector3d here = state.at.logs();
   for (auto& record : records) {
     auto base = record.force_through(torsion_at_contact(record.take(), state.at, state.damping));
-    std::vector<std::vector<double>> shared = compliance_columns(record);
+    std::vector<std::vector<double>> shared = record.compliance();
     for (int k = 0; move && k < 3; ++k) {
       Eigen::Vector3d aside = here;
       aside[k] += k == 0 ? 1e-4 : 1e-3;
@@ -227,8 +223,8 @@ inline void judge_torsion(const torsion_state& best, const std::vector<stick_rec
   if (detail::score(other) > detail::score(best)) best = other;
   if (!best.sane) return failure{"torsion: the fit ran away: no torsion makes the surface steady while it sticks"};
   torsion_fit_result result{.value = best.at, .damping = best.damping};
-  result.rest = {best.rest[0] * detail::compliance_unit,
-                 -best.rest[1] * detail::compliance_unit / std::pow(2 * std::numbers::pi * detail::compliance_corner_Hz, 2)};
+  result.rest = {best.rest[0] * stick_record::compliance_unit,
+                 -best.rest[1] * stick_record::compliance_unit / std::pow(2 * std::numbers::pi * stick_record::compliance_corner_Hz, 2)};
   detail::torsion_state rigid = best;
   rigid.at.impedance_ratio = 1e9;
   detail::torsion_step(records, rigid, false);

@@ -33,6 +33,7 @@ TEST_CASE("stick data: sticking samples keep a window's reach from every slip") 
   CHECK(marked[2110] == 1);
   CHECK(marked[100] == 0);  // before the record's begin()
   const auto rows = rosin::pick(marked, record.relative_m_s(), {force}, {velocity, force});
+  CHECK(rows.sample.size() > 1600);
   CHECK(rows.shared.cols() == 1);
   CHECK(rows.own.cols() == 2);
   CHECK(rows.target.size() == static_cast<Eigen::Index>(rows.sample.size()));

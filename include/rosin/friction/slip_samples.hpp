@@ -1,0 +1,114 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What a stroke shows of the law of friction while it slips: force against slip speed, or against what the law remembers.
+// A law predicts f = N mu(x) from one number x at each instant: the slip speed (velocity curve), or the temperature that the slips so
+// far have left (thermal law). Whatever mu is, it is smooth; so both are fitted with the same number of smooth
+// functions of x, and what is left over says which x the force follows. Nothing runs freely: the law is driven by the reconstructed
+// motion, which it cannot leave.
+//
+// Force and motion are limited to the same band, the law is not: f = N mu(x) is exact for slow changes only. Samples within a
+// kernel's reach of sticking are of use to robust estimates alone.
+//
+#pragma once
+
+#include <rosin/friction/contact_heat.hpp>
+#include <rosin/friction/slip_phases.hpp>
+
+#include <Eigen/Dense>
+
+#include <array>
+
+namespace rosin {
+
+/// Slips of one take: rows in time's order.
+struct slip_samples {
+  std::vector<std::size_t> sample;  ///< index into the arrays that they were taken from
+  Eigen::VectorXd speed_m_s;        ///< |v_r|
+  Eigen::VectorXd friction;         ///< force against the slip / normal force
+};
+
+/// Samples `margin` inside the slips. The arrays (force, surface less rod) have one length.
+[[nodiscard]] inline slip_samples slips_of(std::span<const double> force_N, std::span<const double> relative_m_s, const contact_phases& phases,
+                                           double rod_speed_m_s, double normal_N, std::size_t begin, std::size_t margin) {
+  slip_samples out;
+  const double way = rod_speed_m_s < 0 ? -1.0 : 1.0;
+  const auto inside = interior(phases.slips, relative_m_s.size(), margin);
+  for (std::size_t i = begin; i < relative_m_s.size(); ++i)
+    if (inside[i] && way * (relative_m_s[i] - phases.level_m_s) < 0) out.sample.push_back(i);
+  const auto n = static_cast<Eigen::Index>(out.sample.size());
+  out.speed_m_s.resize(n);
+  out.friction.resize(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const std::size_t i = out.sample[static_cast<std::size_t>(k)];
+    out.speed_m_s[k] = std::abs(relative_m_s[i] - phases.level_m_s);
+    out.friction[k] = way * force_N[i] / normal_N;
+  }
+  return out;
+}
+
+/// Temperature of the contact at every sample (above its surroundings), heated by the reconstructed force along the reconstructed slips.
+[[nodiscard]] inline std::vector<double> temperature_along(std::span<const double> force_N, std::span<const double> relative_m_s, const contact_phases& phases,
+                                                           double normal_N, double rate_Hz, const contact_heat_parameters<double>& heat) {
+  std::vector<double> rise(relative_m_s.size(), 0.0);
+  const auto slipping = interior(phases.slips, relative_m_s.size(), 0);
+  contact_heat<double> contact(heat);
+  for (std::size_t i = 0; i < rise.size(); ++i) {
+    const double slip = slipping[i] ? std::abs(relative_m_s[i] - phases.level_m_s) : 0.0;
+    rise[i] = contact(slip * std::abs(force_N[i]), slip, normal_N, 1 / rate_Hz);
+  }
+  return rise;
+}
+
+/// Cubic B-splines: smooth functions of x that add up to 1, closer together where there are more samples.
+class smooth_functions {
+public:
+  static constexpr int order = 4;
+
+  /// Knots half-way between even steps and quantiles of x. Precondition: x is not empty. `functions` >= 4.
+  explicit smooth_functions(std::vector<double> x, int functions = 11) : functions_{functions} {
+    std::sort(x.begin(), x.end());
+    const int inner = functions - order + 1;
+    for (int k = 0; k < order - 1; ++k) knots_.push_back(x.front());
+    for (int k = 0; k <= inner; ++k) {
+      const double share = static_cast<double>(k) / inner, even = x.front() + share * (x.back() - x.front());
+      knots_.push_back((even + x[static_cast<std::size_t>(static_cast<double>(x.size() - 1) * share)]) / 2);
+    }
+    for (int k = 0; k < order - 1; ++k) knots_.push_back(x.back());
+    const double least = std::max(1e-12, (x.back() - x.front()) * 1e-3);
+    for (std::size_t k = order; k + order <= knots_.size(); ++k) knots_[k] = std::max(knots_[k], knots_[k - 1] + least);
+    for (std::size_t k = knots_.size() - order + 1; k < knots_.size(); ++k) knots_[k] = knots_[knots_.size() - order];
+  }
+
+  /// One row for each x; what lies outside the knots is taken at their ends.
+  [[nodiscard]] Eigen::MatrixXd operator()(const Eigen::VectorXd& x) const {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(x.size(), functions_);
+    for (Eigen::Index i = 0; i < x.size(); ++i) fill(x[i], [&](int k, double value) { out(i, k) = value; });
+    return out;
+  }
+
+private:
+  template <class Put>
+  void fill(double x, const Put& put) const {
+    const auto first = knots_.begin() + order - 1, last = knots_.end() - order;
+    x = std::clamp(x, *first, *last);
+    const auto above = std::upper_bound(first + 1, last, x);
+    const auto at = static_cast<std::size_t>(above - knots_.begin()) - 1;  // knots_[at] <= x
+    std::array<double, order> n{1};
+    for (std::size_t d = 1; d < order; ++d) {  // Cox and de Boor
+      double carry = 0;
+      for (std::size_t r = 0; r < d; ++r) {
+        const double right = knots_[at + r + 1] - x, left = x - knots_[at + 1 + r - d], share = n[r] / (right + left);
+        n[r] = carry + right * share;
+        carry = left * share;
+      }
+      n[d] = carry;
+    }
+    for (std::size_t r = 0; r < order; ++r) put(static_cast<int>(at - order + 1 + r), n[r]);
+  }
+
+  int functions_;
+  std::vector<double> knots_;
+};
+
+}  // namespace rosin

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/contact_effects.hpp>
+
+#include <doctest/doctest.h>
+
+#include "contact_rigs.hpp"
+
+TEST_CASE("contact effects: a contact as declared is called so") {
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 91), b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 93);
+  const auto found = rosin::contact_hypotheses({a.take(), b.take()}, contact_rigs::declared());
+  CHECK(found.as_declared);
+  CHECK(found.stick_fluctuation < 0.01);
+  CHECK(found.friction_residual < 0.02);
+  CHECK(found.independent > 200);
+}
+
+TEST_CASE("contact effects: torsion that nobody declared comes first, and is all there was") {
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 95);
+  const auto found = rosin::contact_hypotheses({a.take()}, {});
+  REQUIRE_FALSE(found.hypotheses.empty());
+  const auto& best = found.hypotheses.front();
+  CHECK_FALSE(found.as_declared);
+  CHECK(best.effect == "torsion");
+  CHECK(best.gain > 10 * found.hypotheses[1].gain);
+  CHECK(best.parameters[0].value == doctest::Approx(7).epsilon(0.005));
+  const auto then = rosin::contact_hypotheses({a.take()}, rosin::include({}, best));
+  CHECK(then.as_declared);
+  for (const auto& h : then.hypotheses) CHECK(h.effect != "torsion");
+}
+
+TEST_CASE("contact effects: takes that tell nothing are left out, with a reason") {
+  const std::vector<double> few(50, 0.1);
+  rosin::contact_take take;
+  take.name = "bow-9", take.force_N = few, take.velocity_m_s = few;
+  const auto found = rosin::contact_hypotheses({take}, {});
+  CHECK(found.hypotheses.empty());
+  CHECK(found.as_declared);
+  REQUIRE(found.warnings.size() == 1);
+  CHECK(found.warnings[0].find("bow-9") == 0);
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/contact_ripple.hpp>
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+#include "contact_rigs.hpp"
+
+namespace {
+
+/// Patches of 30 samples out of every 100.
+rosin::tone_rows patches(double size, double f, double noise, unsigned seed) {
+  std::mt19937 source(seed);
+  std::normal_distribution<double> normal;
+  rosin::tone_rows r;
+  r.rate_Hz = 10e3;
+  std::vector<double> residual;
+  for (std::size_t i = 0; i < 10000; ++i) {
+    if (i % 100 >= 30) continue;
+    r.sample.push_back(i);
+    residual.push_back(2 * size * std::sin(2 * std::numbers::pi * f * static_cast<double>(i) / r.rate_Hz + 1) + noise * normal(source));
+  }
+  const auto n = static_cast<Eigen::Index>(residual.size());
+  r.residual = Eigen::Map<Eigen::VectorXd>(residual.data(), n);
+  r.carrier = Eigen::VectorXd::Constant(n, 2);
+  r.weight = Eigen::VectorXd::Ones(n);
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("ripple: a tone in patches, its frequency and size, and that it lasts") {
+  const std::vector<rosin::tone_rows> takes{patches(0.03, 97.3, 0.1, 1), patches(0.03, 97.3, 0.1, 2)};
+  const auto tone = rosin::find_tone(takes);
+  CHECK(tone.frequency_Hz == doctest::Approx(97.3).epsilon(0.002));
+  CHECK(tone.size == doctest::Approx(0.03).epsilon(0.1));
+  CHECK(std::arg(std::complex<double>(tone.relative[0].real(), tone.relative[0].imag())) == doctest::Approx(1).epsilon(0.15));
+  CHECK(rosin::tone_prediction(takes, tone.frequency_Hz) > 0.7 * tone.explained);
+}
+
+TEST_CASE("ripple: noise alone predicts nothing") {
+  const std::vector<rosin::tone_rows> takes{patches(0, 97.3, 0.1, 3), patches(0, 97.3, 0.1, 4)};
+  const auto tone = rosin::find_tone(takes);
+  CHECK(tone.explained < 12 * 0.1 * 0.1 * 2);
+  CHECK(rosin::tone_prediction(takes, tone.frequency_Hz) < 0.7 * tone.explained);
+  CHECK(rosin::find_tone({}).explained == 0);
+}
+
+TEST_CASE("ripple: a rod whose speed is not steady") {
+  auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
+  slow.speed_Hz = fast.speed_Hz = 143;
+  slow.speed_relative = fast.speed_relative = 0.02;
+  const auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 41), b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 43);
+  rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
+  REQUIRE(bench.usable());
+  const auto h = rosin::speed_ripple_hypothesis(bench);
+  CHECK(h.decided);
+  CHECK(h.gain > 200);
+  CHECK(h.held_out_gain > 100);
+  CHECK(h.parameters[0].value == doctest::Approx(143).epsilon(0.005));
+  CHECK(h.parameters[1].value == doctest::Approx(0.02).epsilon(0.05));
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/contact_slip_effects.hpp>
+
+#include <doctest/doctest.h>
+
+#include "contact_rigs.hpp"
+
+TEST_CASE("contact slip effects: a normal force that is not steady shows in slips alone") {
+  auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
+  slow.normal_Hz = fast.normal_Hz = 118;
+  slow.normal_relative = fast.normal_relative = 0.08;
+  const auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 51), b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 53);
+  const std::vector<rosin::contact_take> takes{a.take(), b.take()};
+  rosin::stick_bench sticks(takes, contact_rigs::declared());
+  const rosin::slip_bench bench(sticks, takes);
+  REQUIRE(bench.usable());
+  const auto h = rosin::normal_ripple_hypothesis(bench);
+  CHECK(h.decided);
+  CHECK(h.gain > 60);
+  CHECK(h.held_out_gain > 30);
+  CHECK(h.parameters[0].value == doctest::Approx(118).epsilon(0.01));
+  CHECK(h.parameters[1].value == doctest::Approx(0.08).epsilon(0.1));
+  CHECK(rosin::speed_ripple_hypothesis(sticks).gain < 20);
+  // once it is part of the model, nothing of it is left
+  auto model = rosin::include(contact_rigs::declared(), h);
+  rosin::stick_bench again(takes, model);
+  const rosin::slip_bench rest(again, takes);
+  CHECK(rest.declared().residual() < 0.5 * bench.declared().residual());
+}
+
+TEST_CASE("contact slip effects: a velocity curve as declared gains by nothing") {
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 61), b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 63);
+  const std::vector<rosin::contact_take> takes{a.take(), b.take()};
+  rosin::stick_bench sticks(takes, contact_rigs::declared());
+  const rosin::slip_bench bench(sticks, takes);
+  REQUIRE(bench.usable());
+  CHECK(bench.declared().residual() < 0.02);
+  const auto ripple = rosin::normal_ripple_hypothesis(bench);
+  CHECK((!ripple.decided || ripple.gain < 20));
+  CHECK(rosin::law_hypothesis(bench).gain < 20);
+}

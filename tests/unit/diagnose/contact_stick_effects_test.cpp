@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/contact_stick_effects.hpp>
+
+#include <doctest/doctest.h>
+
+#include "contact_rigs.hpp"
+
+namespace {
+
+double value(const rosin::contact_hypothesis& h, const char* name) {
+  for (const auto& p : h.parameters)
+    if (p.name == name) return p.value;
+  return -1;
+}
+
+}  // namespace
+
+TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q and mass") {
+  const contact_rigs::springy_rod<decltype(contact_rigs::curve())> law{contact_rigs::curve(), 1800, 14, 0.003};
+  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 11), b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 13);
+  rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
+  REQUIRE(bench.usable());
+  bench.use_damping(rosin::torsion_damping::viscous_modes);
+  const auto rod = rosin::rod_hypothesis(bench);
+  CHECK(rod.decided);
+  CHECK(rod.gain > 300);
+  CHECK(rod.held_out_gain > 200);
+  CHECK(value(rod, "frequency_Hz") == doctest::Approx(1800).epsilon(0.01));
+  CHECK(value(rod, "q") == doctest::Approx(14).epsilon(0.12));
+  CHECK(value(rod, "mass_kg") == doctest::Approx(0.003).epsilon(0.06));
+  for (const auto& other : {rosin::torsion_hypothesis(bench), rosin::bristle_hypothesis(bench), rosin::creep_hypothesis(bench, {a.take(), b.take()})})
+    CHECK(other.density < 0.3 * rod.density);
+}
+
+TEST_CASE("contact stick effects: bristles that bend before they give way, with their stiffness") {
+  const rosin::elasto_plastic<rosin::two_exponential_curve<>> law{{}, {.stiffness_1_m = 8e4, .damping_Ns_m = 0.01, .kinetic = 0.35}};
+  auto rod = contact_rigs::slow(), other_rod = contact_rigs::fast();
+  rod.steady.normal_force_N = other_rod.steady.normal_force_N = 0.35;  // so that s0 is the same in both
+  const auto a = contact_rigs::play(law, rod, contact_rigs::rolls, 21), b = contact_rigs::play(law, other_rod, contact_rigs::rolls, 23);
+  rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
+  REQUIRE(bench.usable());
+  const auto h = rosin::bristle_hypothesis(bench);
+  CHECK(h.decided);
+  CHECK(h.gain > 200);
+  CHECK(value(h, "bristle_stiffness_N_m") == doctest::Approx(8e4 * 0.35).epsilon(0.12));
+  CHECK(rosin::rod_hypothesis(bench).density < h.density);
+}
+
+TEST_CASE("contact stick effects: a contact as declared gains by nothing") {
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 31), b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 33);
+  const std::vector<rosin::contact_take> takes{a.take(), b.take()};
+  rosin::stick_bench bench(takes, contact_rigs::declared());
+  REQUIRE(bench.usable());
+  for (const auto& h : {rosin::torsion_hypothesis(bench), rosin::rod_hypothesis(bench), rosin::bristle_hypothesis(bench), rosin::creep_hypothesis(bench, takes)})
+    CHECK((!h.decided || h.gain < 40));
+}
