@@ -83,8 +83,8 @@ inline void set_contact(wave_design& d, const string_parameters& string) {
   d.kernels.fill = phases(fill, stride);
   d.kernels.local = local_response(string, step_s);
   const double at_rest = wave_mobility(string, 0);  // exactly: a force that stays must move the string nowhere
-  if (stride > 1) scale_to(d.kernels.thin.taps, 1);
-  for (auto& phase : d.kernels.fill) scale_to(phase.taps, at_rest);
+  if (stride > 1) d.kernels.thin.scale_to(1);
+  for (auto& phase : d.kernels.fill) phase.scale_to(at_rest);
   scale_to(d.kernels.local, at_rest);
 }
 

@@ -27,12 +27,20 @@ namespace rosin {
 template <class T>
 struct wave_taps {
   std::ptrdiff_t first = 0;
-  std::vector<T> taps{};
+  std::vector<T> taps{}, backwards{};
 
   wave_taps() = default;
   template <class U>
-  explicit wave_taps(const wave_taps<U>& other) : first{other.first}, taps(other.taps.begin(), other.taps.end()) {}
-  explicit wave_taps(const fir& kernel) : first{kernel.first}, taps(kernel.taps.begin(), kernel.taps.end()) {}
+  explicit wave_taps(const wave_taps<U>& other)
+      : first{other.first}, taps(other.taps.begin(), other.taps.end()), backwards(taps.rbegin(), taps.rend()) {}
+  explicit wave_taps(const fir& kernel)
+      : first{kernel.first}, taps(kernel.taps.begin(), kernel.taps.end()), backwards(taps.rbegin(), taps.rend()) {}
+  void scale_to(T sum) noexcept {
+    T all = 0;
+    for (const T tap : taps) all += tap;
+    for (auto* side : {&taps, &backwards})
+      for (T& tap : *side) tap *= sum / all;
+  }
   [[nodiscard]] std::ptrdiff_t last() const noexcept { return first + static_cast<std::ptrdiff_t>(taps.size()) - 1; }
   [[nodiscard]] bool empty() const noexcept { return taps.empty(); }
 };

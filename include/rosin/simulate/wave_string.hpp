@@ -45,44 +45,47 @@ private:
 
 namespace detail {
 
+/// Sum of a[k] b[k].
+template <class T>
+[[nodiscard]] inline T dot(const T* a, const T* b, std::ptrdiff_t size) noexcept {
+  using pack = Eigen::Array<T, 8, 1>;
+  using map = Eigen::Map<const pack>;
+  pack even = pack::Zero(), odd = pack::Zero();
+  std::ptrdiff_t k = 0;
+  for (; k + 16 <= size; k += 16) {
+    even += map(a + k) * map(b + k);
+    odd += map(a + k + 8) * map(b + k + 8);
+  }
+  for (; k + 8 <= size; k += 8) even += map(a + k) * map(b + k);
+  const pack sum = even + odd;
+  T total = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+  for (; k < size; ++k) total += a[k] * b[k];
+  return total;
+}
+
 /// out[i] += sum over k of taps[k] in[i - first - k], i = 0 ... count - 1.
 template <class T>
 inline void add_filtered(const wave_taps<T>& kernel, const T* in, T* out, std::ptrdiff_t count) noexcept {
-  constexpr std::ptrdiff_t width = 8;
+  constexpr std::ptrdiff_t width = 16;
   using pack = Eigen::Array<T, width, 1>;
+  using map = Eigen::Map<const pack>;
   const auto taps = static_cast<std::ptrdiff_t>(kernel.taps.size());
   const T* h = kernel.taps.data();
   const T* x = in - kernel.first;
   std::ptrdiff_t i = 0;
   for (; i + width <= count; i += width) {
-    pack even = Eigen::Map<const pack>(out + i), odd = pack::Zero();
-    std::ptrdiff_t k = 0;
-    for (; k + 1 < taps; k += 2) {
-      even += h[k] * Eigen::Map<const pack>(x + i - k);
-      odd += h[k + 1] * Eigen::Map<const pack>(x + i - k - 1);
-    }
-    if (k < taps) even += h[k] * Eigen::Map<const pack>(x + i - k);
-    Eigen::Map<pack>(out + i) = even + odd;
+    pack sum = map(out + i);
+    for (std::ptrdiff_t k = 0; k < taps; ++k) sum += h[k] * map(x + i - k);
+    Eigen::Map<pack>(out + i) = sum;
   }
-  for (; i < count; ++i)
-    for (std::ptrdiff_t k = 0; k < taps; ++k) out[i] += h[k] * x[i - k];
+  for (; i < count; ++i) out[i] += dot(kernel.backwards.data(), x + i - taps + 1, taps);
 }
 
 /// The same for every `stride`-th input: out[i] += sum taps[k] in[stride i - first - k].
 template <class T>
 inline void add_thinned(const wave_taps<T>& kernel, const T* in, std::ptrdiff_t stride, T* out, std::ptrdiff_t count) noexcept {
-  constexpr std::ptrdiff_t width = 8;
-  using pack = Eigen::Array<T, width, 1>;
-  const auto taps = static_cast<std::ptrdiff_t>(kernel.taps.size());  // symmetric: order does not matter
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const T* x = in + stride * i - kernel.last();
-    pack sum = pack::Zero();
-    std::ptrdiff_t k = 0;
-    for (; k + width <= taps; k += width) sum += Eigen::Map<const pack>(kernel.taps.data() + k) * Eigen::Map<const pack>(x + k);
-    T total = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
-    for (; k < taps; ++k) total += kernel.taps[static_cast<std::size_t>(k)] * x[k];
-    out[i] += total;
-  }
+  for (std::ptrdiff_t i = 0; i < count; ++i)
+    out[i] += dot(kernel.backwards.data(), in + stride * i - kernel.last(), static_cast<std::ptrdiff_t>(kernel.taps.size()));
 }
 
 }  // namespace detail
@@ -98,7 +101,7 @@ class wave_string {
 public:
   explicit wave_string(wave_kernels<T> kernels)
       : k_{std::move(kernels)},
-        wave_ahead_{k_.block / k_.stride + k_.fill_ahead() + 2},
+        wave_ahead_{k_.block / k_.stride + k_.fill_ahead() + std::max(k_.echo[0].first, k_.echo[1].first) + 2},
         force_{thin_reach(), k_.block},
         velocity_{0, k_.block + static_cast<std::ptrdiff_t>(k_.local.size())},
         echoes_{k_.fill_ahead() + fill_back() + 8, wave_ahead_},
@@ -184,18 +187,20 @@ private:
     sent_ = end;
   }
 
-  /// Echoes as far ahead as the coming block needs them.
+  /// Echoes as far ahead as the coming block needs them; the far side's, once more are needed, as far as they are known.
   void receive() noexcept {
     const auto now_end = (block_end_ - 1) / k_.stride + 1, end = now_end + k_.fill_ahead();
-    const auto from = received_[1 - k_.near];
+    const std::size_t far = 1 - k_.near;
     receive(k_.near, k_.direct.empty() ? end : now_end);
-    receive(1 - k_.near, end);
-    const T *near = back_[k_.near].at(from), *far = back_[1 - k_.near].at(from);
-    T* sum = echoes_.at(from);
-    for (std::ptrdiff_t i = 0; i < end - from; ++i) sum[i] = k_.direct.empty() ? near[i] + far[i] : far[i];
+    if (received_[far] < end) receive(far, std::max(end, sent_ + k_.echo[far].first));
+    const T *near_back = back_[k_.near].at(summed_), *far_back = back_[far].at(summed_);
+    T* sum = echoes_.at(summed_);
+    for (std::ptrdiff_t i = 0; i < end - summed_; ++i) sum[i] = k_.direct.empty() ? near_back[i] + far_back[i] : far_back[i];
+    summed_ = std::max(summed_, end);
   }
   void receive(std::size_t j, std::ptrdiff_t end) noexcept {
-    const auto from = std::exchange(received_[j], end);
+    const auto from = received_[j];
+    received_[j] = std::max(from, end);
     if (end > from) detail::add_filtered(k_.echo[j], std::as_const(out_[j]).at(from), back_[j].at(from), end - from);
   }
 
@@ -213,7 +218,7 @@ private:
   }
 
   wave_kernels<T> k_;
-  std::ptrdiff_t wave_ahead_ = 0, now_ = 0, block_end_ = 0, sent_ = 0;
+  std::ptrdiff_t wave_ahead_ = 0, now_ = 0, block_end_ = 0, sent_ = 0, summed_ = 0;
   std::array<std::ptrdiff_t, 2> received_{};
   wave_tape<T> force_, velocity_, echoes_;
   std::array<wave_tape<T>, 2> out_, back_;
