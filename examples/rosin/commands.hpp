@@ -10,9 +10,11 @@ namespace tool {
 
 void add_check(CLI::App& app, exit_code& result);
 void add_compare(CLI::App& app, exit_code& result);
+void add_diagnose(CLI::App& app, exit_code& result);
 void add_fit(CLI::App& app, exit_code& result);
 void add_reconstruct(CLI::App& app, exit_code& result);
 void add_simulate(CLI::App& app, exit_code& result);
+void add_sweep(CLI::App& app, exit_code& result);
 void add_validate(CLI::App& app, exit_code& result);
 
 }  // namespace tool

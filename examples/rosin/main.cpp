@@ -40,7 +40,9 @@ tool::exit_code run(int argc, char** argv) {
   tool::add_check(app, result);
   tool::add_fit(app, result);
   tool::add_reconstruct(app, result);
+  tool::add_diagnose(app, result);
   tool::add_simulate(app, result);
+  tool::add_sweep(app, result);
   tool::add_compare(app, result);
   tool::add_validate(app, result);
   try {

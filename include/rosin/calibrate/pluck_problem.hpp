@@ -238,7 +238,7 @@ normal_equations line_problem<Model>::linearise(const Eigen::VectorXd& v) const 
   for (Eigen::Index p = 0; p < P; ++p) {
     const auto [known, sd] = prior_[static_cast<std::size_t>(p)];
     if (!model_.is_free(p)) eq.hessian(p, p) = 1;
-    if (sd <= 0) continue;
+    if (sd <= 0 || !model_.is_free(p)) continue;
     eq.prior(p, p) = 1 / (sd * sd);
     eq.gradient[p] += (known - v[p]) / (sd * sd);
     eq.cost += (known - v[p]) * (known - v[p]) / (sd * sd);

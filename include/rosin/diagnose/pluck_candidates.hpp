@@ -33,7 +33,7 @@ inline double cost_of(const scene_fit& f, const std::array<double, 2>& noise) {
 inline std::vector<scored_start> best_starts(const pluck_score& test, const scene_plucks& with, const pluck_effect& e, std::size_t most) {
   std::vector<scored_start> all;
   for (const auto& start : e.starts) {
-    const score s = test(with, start);
+    const score_result s = test(with, start);
     scored_start one{start, s.gain};
     if (e.strength >= 0) {
       const auto i = static_cast<std::size_t>(e.strength);

@@ -155,6 +155,7 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
   }
   std::vector<fit_stage> stages{{12, 8, false, freedom::release_only}, {1000, 12, true, freedom::release_only}, {1000, std::min(horizon, fit.horizon_periods), true, freedom::release_only}};
   const scene_fit seen = fit_scene(one, effects, v, stages, {1e-3, 1e-3});
+  if (getenv("DBG")) fprintf(stderr, "held release %.9f strength %.5f conv %d it %d ratio %.5f start %.9f\n", seen.value[one.layout.at(0, 0)], seen.value[one.layout.at(0, 1)], seen.converged, seen.iterations, seen.quality.residual_ratio[0], v[one.layout.at(0, 0)]);
   const auto problem = one.problem(effects, seen.value, stages.back(), {1, 1});
   double power = 0, samples = 0;
   for (const auto& part : {problem.part(0, 0), problem.part(0, 1)})
@@ -198,12 +199,14 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
       if (round == 0 || &f == &fits.front() || worth)
         d.ranking.push_back({detail::ids_of(f), -0.5 * detail::cost_of(f, noise) / temper - 0.5 * detail::free_parameters(f) * std::log(n_eff)});
     if (round == 0) d.ranking.push_back({{}, -0.5 * detail::cost_of(before, noise) / temper});
-    if (!(gain > 14) || !worth) break;
+    // Linear parameters of which there are many (hum) gain half a unit each from noise alone.
+    const double chance = std::max(0, static_cast<int>(tried.effects.back().parameters.size()) - 3);
+    if (!(gain > 14 + 0.5 * chance + 2 * std::sqrt(chance)) || !worth) break;
     d.mismatched = true;
     d.found_gain.push_back(gain);
     d.alternatives.clear();
     for (const scene_fit& f : fits)
-      if (&f != &tried && f.horizon_periods == tried.horizon_periods && 0.5 * (detail::cost_of(f, noise) - detail::cost_of(tried, noise)) / temper < 5)
+      if (&f != &tried && f.horizon_periods == tried.horizon_periods && 0.5 * (detail::cost_of(f, noise) - detail::cost_of(tried, noise)) / temper < 5 && detail::free_parameters(f) <= detail::free_parameters(tried) + 2)
         d.alternatives.push_back(f.effects.back().id());
     now = tried;
     if (now.quality.inflation() == 1.0 && round > 0) break;

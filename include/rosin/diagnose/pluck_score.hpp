@@ -15,7 +15,7 @@
 
 namespace rosin {
 
-struct score {
+struct score_result {
   double mix = 0;   ///< how many times the effect's starting strength
   double gain = 0;  ///< of the log-likelihood
 };
@@ -33,7 +33,7 @@ public:
   }
 
   /// The effect at one of its starting points (physical values).
-  [[nodiscard]] score operator()(const scene_plucks& with, const std::vector<double>& start) const {
+  [[nodiscard]] score_result operator()(const scene_plucks& with, const std::vector<double>& start) const {
     Eigen::VectorXd v(with.size());
     v.head(value_.size()) = value_;
     for (std::size_t i = 0; i < start.size(); ++i) {
@@ -54,7 +54,7 @@ public:
 
   /// The same for a change of the recordings themselves: `columns` holds, take by take, what the filtered recording after the release
   /// loses for one unit of it. Returns mix, gain and the standard deviation of mix.
-  struct column_score : score {
+  struct column_score : score_result {
     double sd = 0;
   };
   [[nodiscard]] column_score of_columns(const std::vector<std::array<Eigen::VectorXd, 2>>& columns) const {

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+//
+// rosin diagnose: where simulation and recordings differ, and which physics was left out.
+//
+#include "calibration_file.hpp"
+#include "commands.hpp"
+#include "diagnose_rig.hpp"
+
+#include <iostream>
+#include <memory>
+
+namespace tool {
+
+namespace {
+
+struct options {
+  std::string rig, json_file;
+  bool force = false;
+};
+
+std::string figure(double x, const char* form = "%.4g") { return rosin::detail::figure(x, form); }
+
+void print_text(const rig_diagnosis& d) {
+  std::cout << d.title << ": " << d.verdict << '\n' << sentence(d) << '\n';
+  for (const auto& m : d.missing) {
+    std::cout << m.effect << (m.end.empty() ? "" : ", " + m.end + " end") << (m.channel.empty() ? "" : ", channel " + m.channel) << '\n';
+    for (const auto& p : m.parameters) std::cout << "  " << p.name << " = " << figure(p.value, "%.6g") << " +- " << figure(p.sd, "%.2g") << '\n';
+    for (const auto& other : m.indistinguishable_from) std::cout << "  cannot be told from " << other << '\n';
+  }
+  std::cout << d.metric << ": " << figure(d.before) << " before";
+  if (d.after) std::cout << ", " << figure(*d.after) << " after";
+  std::cout << ", " << figure(d.noise_floor) << " from noise alone\n";
+  std::size_t shown = 0;
+  for (const auto& r : d.ranking) {
+    if (++shown > 6) break;
+    std::string names;
+    for (const auto& e : r.effects) names += (names.empty() ? "" : " + ") + e;
+    std::cout << "  " << (names.empty() ? "as declared" : names) << ": log10 of the evidence " << figure(r.log10_evidence) << '\n';
+  }
+  for (const auto& line : d.assumed) std::cout << "assumed: " << line << '\n';
+}
+
+exit_code run(const options& given, provenance from) {
+  const bool as_json = given.json_file == "-";
+  if (!given.json_file.empty())
+    if (const auto why = may_write_file(given.json_file, given.force)) return fail(why->message, as_json);
+  const auto folder = open_rig(given.rig, from);
+  if (!folder) return fail(folder.error(), as_json);
+  if (!folder->rig.has_both_forces()) return fail(folder->rig.file + ": channels near and far (forces on both terminations) are needed", as_json);
+  const auto found = diagnose(folder->rig, from);
+  if (!found) return fail(found.error(), as_json);
+  if (!given.json_file.empty())
+    if (const auto why = save_json(given.json_file, to_json(*found, from), given.force)) return fail(why->message);
+  for (const auto& line : found->warnings) std::cerr << "rosin: warning: " << line << '\n';
+  if (!as_json) print_text(*found);
+  return exit_code::ok;
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, exit_code& result) {
+  auto given = std::make_shared<options>();
+  CLI::App* command = app.add_subcommand("diagnose", "Say what physics the declared model leaves out");
+  command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
+  command->add_option("--json", given->json_file, "Write the diagnosis to FILE; without one, or with -, to standard output")->expected(0, 1)->default_str("-")->type_name("FILE");
+  add_force_option(*command, given->force);
+  command->footer(
+      "The model that [model] declares is fitted to the plucks; what is left is set against every effect of the catalogue,\n"
+      "alone and together, and judged on takes that were not fitted. Then the strokes are reconstructed with what was found,\n"
+      "and tension and contact examined. Verdicts: no-mismatch, explained, unexplained.\n"
+      "Exit status: 0 done, 2 nothing could be done.");
+  command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
+}
+
+}  // namespace tool

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+//
+// A whole rig diagnosed: plucks first (string, ends, sensors), then the strokes (tension, contact).
+//
+#pragma once
+
+#include "rig_input.hpp"
+
+#include <array>
+
+namespace tool {
+
+struct diagnosed_value {
+  std::string name;
+  double value = 0, sd = 0;
+};
+
+/// One effect that the declared model lacks.
+struct missing_effect {
+  std::string effect;
+  std::string end, channel;               ///< "near", "far" or empty
+  std::optional<double> position;
+  double probability = 1;
+  std::vector<std::string> indistinguishable_from;
+  std::vector<diagnosed_value> parameters;
+  std::string statement;
+};
+
+struct ranked_model {
+  std::vector<std::string> effects;
+  double log10_evidence = 0;
+};
+
+struct rig_diagnosis {
+  std::string title, verdict;
+  std::vector<missing_effect> missing;
+  std::vector<ranked_model> ranking;
+  std::vector<diagnosed_value> calibration;
+  std::string metric = "pluck-residual";
+  std::vector<std::string> held_out;
+  double before = 0, noise_floor = 0;
+  std::optional<double> after;
+  // Where it shows.
+  std::string take, channel;
+  std::optional<std::array<double, 2>> time_s, band_Hz;
+  std::optional<double> position;
+  double residual_over_noise = 0;
+  std::vector<std::string> assumed, warnings;
+};
+
+[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from);
+/// What an effect means, with its values.
+[[nodiscard]] std::string statement_of(const missing_effect& m);
+/// A parameter of the fit in the names and units of the format; the doubt in nominal values joins the standard deviation.
+[[nodiscard]] diagnosed_value in_si(const std::string& name, double value, double sd, const rosin::rig_values& values, double fundamental_Hz);
+[[nodiscard]] json to_json(const rig_diagnosis& d, const provenance& from);
+[[nodiscard]] std::string sentence(const rig_diagnosis& d);
+
+}  // namespace tool

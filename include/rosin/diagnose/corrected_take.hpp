@@ -1,0 +1,93 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Bowed takes without what the sensors did to them, once plucks have told what that is: each channel's own response divided out in
+// the frequency domain, crosstalk inverted, mains hum taken out, a curved characteristic straightened. Recorded nominal newtons in
+// and out. Effects on the string itself are not undone here.
+//
+#pragma once
+
+#include <rosin/condition/ac_coupling.hpp>
+#include <rosin/diagnose/scene_fit.hpp>
+#include <rosin/math/fft.hpp>
+
+namespace rosin {
+
+namespace detail {
+
+/// Least-squares fit of harmonics of the mains, taken out.
+inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmonics, double rate_Hz) {
+  const auto n = static_cast<Eigen::Index>(x.size());
+  Eigen::MatrixXd basis(n, 2 * harmonics + 1);
+  basis.col(2 * harmonics).setOnes();
+  for (int h = 0; h < harmonics; ++h)
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double turn = 2 * std::numbers::pi * frequency_Hz * (h + 1) * static_cast<double>(i) / rate_Hz;
+      basis(i, 2 * h) = std::cos(turn), basis(i, 2 * h + 1) = std::sin(turn);
+    }
+  Eigen::Map<Eigen::VectorXd> data(x.data(), n);
+  Eigen::VectorXd amplitude = (basis.transpose() * basis).ldlt().solve(basis.transpose() * data);
+  amplitude[2 * harmonics] = 0;
+  data -= basis * amplitude;
+}
+
+/// Divides a channel by its sensor's response below `edge_Hz`, the record held at its ends in the padding.
+inline void divide_by_sensor(std::vector<double>& x, const sensor_response& sensor, double rate_Hz, double edge_Hz) {
+  const std::size_t pad = 4096, size = fast_size(x.size() + 2 * pad);
+  std::vector<double> wide(size);
+  for (std::size_t i = 0; i < size; ++i) wide[i] = x[std::min(x.size() - 1, i < pad ? 0 : i - pad)];
+  for (std::size_t i = x.size() + pad; i < size; ++i) {  // back to where it begins, gently
+    const double u = static_cast<double>(i - x.size() - pad) / static_cast<double>(size - x.size() - pad);
+    wide[i] += (wide[0] - x.back()) * 0.5 * (1 - std::cos(std::numbers::pi * u));
+  }
+  eigen_fft<double> fft(size);
+  std::vector<std::complex<double>> bins(size / 2 + 1);
+  fft.forward(wide.data(), bins.data());
+  for (std::size_t k = 1; k < bins.size(); ++k) {
+    const double f = std::min(edge_Hz, static_cast<double>(k) * rate_Hz / static_cast<double>(size));
+    bins[k] /= sensor({0, 2 * std::numbers::pi * f});
+  }
+  fft.inverse(bins.data(), wide.data());
+  std::copy_n(wide.begin() + pad, x.size(), x.begin());
+}
+
+}  // namespace detail
+
+/// Whether all effects of a fit are of sensors and plucking only, so that reconstruction can go on as if they were not there.
+[[nodiscard]] inline bool string_is_plain(const std::vector<pluck_effect>& effects) {
+  return std::none_of(effects.begin(), effects.end(), [](const pluck_effect& e) {
+    return e.at_end || e.name == "point-mass" || e.name == "point-damper" || e.name == "second-polarization";
+  });
+}
+
+/// In place, near and far.
+inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::array<std::vector<double>, 2>& recorded, double rate_Hz, double edge_Hz) {
+  Eigen::Index at = data.layout.size();
+  for (const pluck_effect& e : fit.effects) {
+    if (e.name == "sensor-nonlinearity" && e.undo) {
+      std::vector<pluck_take> one(1);
+      one[0].force_N = recorded;
+      e.undo(one, data.layout, fit.value, fit.value[at]);
+      recorded = one[0].force_N;
+    }
+    at += static_cast<Eigen::Index>(e.parameters.size());
+  }
+  const pluck_scene scene = scene_plucks(data.layout, data.guess.ac_coupled_Hz, fit.effects).scene(fit.value, 0);
+  if (!scene.hum.empty())
+    for (auto& x : recorded) detail::take_out_hum(x, scene.hum.front().frequency_Hz, static_cast<int>(scene.hum.size()), rate_Hz);
+  if (const double c = scene.crosstalk; c != 0)
+    for (std::size_t i = 0; i < recorded[0].size(); ++i) {
+      const std::array<double, 2> gain{std::exp(fit.value[pluck_layout::gain_near]), std::exp(fit.value[pluck_layout::gain_far])};
+      const double near = recorded[0][i] / gain[0], far = recorded[1][i] / gain[1];
+      recorded[0][i] = gain[0] * (near - c * far) / (1 - c * c);
+      recorded[1][i] = gain[1] * (far - c * near) / (1 - c * c);
+    }
+  for (std::size_t c = 0; c < 2; ++c) {
+    sensor_response sensor = scene.sensors[c];
+    if (sensor.corner_Hz > 0) restore_ac_coupled(std::span(recorded[c]), sensor.corner_Hz, rate_Hz);
+    sensor.corner_Hz = 0;
+    if (sensor.resonance_Hz > 0 || sensor.delay_s != 0) detail::divide_by_sensor(recorded[c], sensor, rate_Hz, edge_Hz);
+  }
+}
+
+}  // namespace rosin

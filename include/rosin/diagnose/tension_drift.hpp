@@ -1,0 +1,67 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Did the tension change between the plucks and the strokes? Then both delays are stretched alike, d tau / tau = -dT / (2 T), and the
+// two versions of the force part (specification sheet 6.0 line 7, 6.1 item 15). One number for all takes; how well a moved contact
+// would do instead is tried beside it.
+//
+#pragma once
+
+#include <rosin/reconstruct/fine_tune.hpp>
+
+namespace rosin {
+
+/// One bowed take: recorded nominal newtons, and the calibration that the plucks gave.
+struct bowed_recording {
+  std::span<const double> near_N, far_N;
+  calibration from;
+};
+
+struct tension_drift {
+  double relative = 0, sd = 0;    ///< tension in the strokes / in the plucks - 1
+  double delta_before = 0, delta_after = 0, delta_moved_contact = 0;  ///< Eq. (12), rms over the takes
+  double scatter = 0;             ///< between takes, of `relative`
+};
+
+/// The calibration at another tension: delays, stiffness (epsilon = B m / T^2) and impedance follow.
+[[nodiscard]] inline calibration at_tension(calibration c, double relative) {
+  const double slower = 1 / std::sqrt(1 + relative);
+  for (double& d : c.at.delay_s) d *= slower;
+  c.at.stiffness_s2 *= std::pow(slower, 4);
+  c.at.impedance_Ns_m /= slower;
+  return c;
+}
+
+template <class Physics = full_physics>
+[[nodiscard]] tension_drift find_tension_drift(const std::vector<bowed_recording>& takes, const band& limits, double rate_Hz) {
+  tension_drift out;
+  std::vector<double> found, weight;
+  for (const bowed_recording& t : takes) {
+    calibration c = t.from;
+    c.covariance *= 1e-6;  // the plucks' own errors are not what is sought
+    double relative = 0, sd = 1;
+    fine_tuning last{c};
+    for (int round = 0; round < 2; ++round) {
+      last = fine_tune<Physics>(at_tension(c, relative), t.near_N, t.far_N, limits, rate_Hz, {1e-2, 1e-9, 1e-9});
+      if (round == 0) out.delta_before += last.delta_before * last.delta_before;
+      const double one_way = c.at.delay_s[0] + c.at.delay_s[1], stretch = (last.shift[0] + last.shift[1]) / one_way;
+      relative = (1 + relative) / std::pow(1 + stretch, 2) - 1;
+      sd = 2 * std::sqrt(last.tuned.covariance(0, 0)) / c.at.delay_s[0];
+    }
+    const auto moved = fine_tune<Physics>(c, t.near_N, t.far_N, limits, rate_Hz, {1e-9, 1e-2, 1e-2});
+    out.delta_after += last.delta_after * last.delta_after;
+    out.delta_moved_contact += moved.delta_after * moved.delta_after;
+    found.push_back(relative);
+    weight.push_back(1 / (sd * sd));
+  }
+  double sum = 0, weights = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) sum += weight[i] * found[i], weights += weight[i];
+  const double n = std::max<double>(1, static_cast<double>(takes.size()));
+  out.relative = weights > 0 ? sum / weights : 0;
+  for (const double r : found) out.scatter = std::max(out.scatter, std::abs(r - out.relative));
+  out.sd = std::hypot(weights > 0 ? 1 / std::sqrt(weights) : 0, out.scatter / std::sqrt(n));
+  for (double* d : {&out.delta_before, &out.delta_after, &out.delta_moved_contact}) *d = std::sqrt(*d / n);
+  return out;
+}
+
+}  // namespace rosin
