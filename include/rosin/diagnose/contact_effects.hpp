@@ -25,6 +25,7 @@ struct contact_findings {
   double friction_residual = 0, friction_floor = 0;   ///< the same of the law, as a coefficient of friction
   double independent = 0;                             ///< independent samples that stick
   double threshold = 0;                               ///< gains below it are what imperfect models of a contact as declared gain
+  double tone_threshold = 0;                          ///< the same for tones in time, which a string does not make by itself
   bool as_declared = true;
   std::vector<std::string> warnings;
 };
@@ -112,9 +113,12 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   detail::add_stick_hypotheses(sticks, takes, out);
   detail::add_slip_hypotheses(sticks, takes, out);
   std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(), [](const auto& a, const auto& b) { return a.decided != b.decided ? a.decided : a.gain > b.gain; });
-  out.threshold = std::max(40.0, 0.04 * out.independent);
-  for (const auto& h : out.hypotheses)
-    if (h.decided && h.gain > out.threshold && h.held_out_gain > out.threshold / 2) out.as_declared = false;
+  out.threshold = std::max(40.0, 0.035 * out.independent);
+  out.tone_threshold = std::max(30.0, 0.01 * out.independent);
+  for (const auto& h : out.hypotheses) {
+    const double needed = h.effect.find("ripple") != std::string::npos ? out.tone_threshold : out.threshold;
+    if (h.decided && h.gain > needed && h.held_out_gain > needed / 2) out.as_declared = false;
+  }
   return out;
 }
 

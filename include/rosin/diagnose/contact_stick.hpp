@@ -154,7 +154,7 @@ public:
       const auto which = d.rows.size();
       d.rows.push_back(pick(marked_[which], target, shared, {std::vector<double>(target.size(), 1.0)}));
     }
-    d.add_bound(-4, 0.5);
+    d.add_bound(-4, 1.5);
     d.add_bound(-1.5, 1.5);
     for (int k = 0; torsion && k < 3; ++k) d.add_bound(loose ? -1.0 : -2 * model_.torsion_tolerance[k], loose ? 1.0 : 2 * model_.torsion_tolerance[k]);
     include_found(d);
@@ -223,7 +223,7 @@ private:
 
   void include_found(stick_design& d) {
     if (model_.rod) {
-      const auto [f0, q, mass] = *model_.rod;
+      const double f0 = (*model_.rod)[0], q = (*model_.rod)[1], mass = (*model_.rod)[2];
       for (std::size_t t = 0; t < records_.size(); ++t)
         d.add_shared(t, records_[t].force_through([=](double f) { return -std::complex<double>(0, f / (2 * std::numbers::pi * mass)) / std::complex<double>(f0 * f0 - f * f, f * f0 / q); }));
       d.add_bound(0, 1e9);

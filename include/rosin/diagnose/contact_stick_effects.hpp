@@ -174,22 +174,27 @@ struct family_fit {
   for (auto& r : bench.records()) force.push_back(r.force_through([](double) { return 1.0; }));
   const double rate = bench.records().front().take().rate_Hz;
   double best = 0, f_best = 1000, q_best = 10;
+  const auto attempt = [&](double f0, double q) {
+    if (!(f0 > 80 && f0 < 0.16 * rate && q > 3.9 && q < 80)) return;
+    for (std::size_t t = 0; t < force.size(); ++t) column[t] = detail::ring(force[t], f0, q, rate);
+    double size = 0;
+    const double gain = quick.by(column, size);
+    if (size > 0 && gain > best) best = gain, f_best = f0, q_best = q;
+  };
   for (const double q : {4.0, 12.0, 40.0})
-    for (double f0 = 120; f0 < 0.25 * rate; f0 *= 1.03) {
-      for (std::size_t t = 0; t < force.size(); ++t) column[t] = detail::ring(force[t], f0, q, rate);
-      double size = 0;
-      const double gain = quick.by(column, size);
-      if (size > 0 && gain > best) best = gain, f_best = f0, q_best = q;
-    }
+    for (double f0 = 120; f0 < 0.16 * rate; f0 *= 1.03) attempt(f0, q);
+  for (double step = 0.02; step > 2e-4; step /= 2)
+    for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}})
+      attempt(f_best * std::exp(i * step), q_best * std::exp(15 * j * step));
   if (!(best > 0)) return detail::nothing(bench, h);
   const Eigen::Vector2d start(std::log(f_best), std::log(q_best));
-  const auto found = detail::fit_family(bench, detail::rod_mobility, start, 1 / 5e-3, Eigen::Vector2d(std::log(80.0), std::log(2.5)),
-                                       Eigen::Vector2d(std::log(0.25 * rate), std::log(80.0)), 7);
+  const auto found = detail::fit_family(bench, detail::rod_mobility, start, 1 / 5e-3, Eigen::Vector2d(std::log(80.0), std::log(3.9)),
+                                       Eigen::Vector2d(std::log(0.16 * rate), std::log(80.0)), 5);
   detail::settle_hypothesis(bench, found.fit, h);
   const double f0 = std::exp(found.theta[0]), q = std::exp(found.theta[1]), mass = found.size > 0 ? 1 / found.size : 1e9;
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   if (sd.size() == 3) h.parameters = {{"frequency_Hz", f0, f0 * sd[1]}, {"q", q, q * sd[2]}, {"mass_kg", mass, mass * mass * sd[0]}};
-  h.decided = found.size > 0 && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 2.6 && q < 79;  // inside the range that was searched
+  h.decided = found.size > 0 && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 79;  // inside the range that was searched
   return h;
 }
 

@@ -136,6 +136,10 @@ inline void keep_smooth(stick_rows& rows, double weight = 0.1) {
   return std::sqrt(r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size())));
 }
 
+[[nodiscard]] inline std::vector<double> heat_along(const slip_record& r, const contact_heat_parameters<double>& heat) {
+  return temperature_along(r.force_N, r.relative_m_s, r.phases, r.normal_N, r.rate_Hz, heat);
+}
+
 template <class Memory>
 [[nodiscard]] stick_design memory_design(const std::vector<slip_record>& records, const Memory& memory, std::size_t stride) {
   std::vector<Eigen::VectorXd> x;
@@ -195,21 +199,22 @@ template <class Memory>
   best = 1e300;
   attempt(with_capacity[with_capacity[1].first < with_capacity[0].first].second);
   descend(1.005);
-  for (const double layer : {1e-6, 3e-6})
-    for (const double area : {0.7e-7, 1.5e-7}) {
-      const contact_heat_parameters<double> heat{.layer_m = layer, .area_per_newton_m2 = area};
-      const auto with_memory = [&](std::size_t t) {
-        const auto& r = records[t];
-        return temperature_along(r.force_N, r.relative_m_s, r.phases, r.normal_N, r.rate_Hz, heat);
-      };
-      if (const double r = detail::quick_residual(detail::memory_design(records, with_memory, stride)); r < best) best = r, out.heat_memory = true, out.heat = heat;
-    }
+  double best_memory = 1e300;
+  contact_heat_parameters<double> found;
+  const auto remember = [&](double layer, double area) {
+    const contact_heat_parameters<double> heat{.layer_m = layer, .area_per_newton_m2 = area};
+    const double r = detail::quick_residual(detail::memory_design(records, [&](std::size_t t) { return detail::heat_along(records[t], heat); }, stride));
+    if (r < best_memory) best_memory = r, found = heat;
+  };
+  for (const double layer : {1e-6, 3.5e-6})
+    for (const double area : {0.6e-7, 1.5e-7}) remember(layer, area);
+  if (best_memory < 2 * best)
+    for (double factor = 1.6; factor > 1.05; factor = std::sqrt(factor))
+      for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) remember(found.layer_m * std::pow(factor, i), found.area_per_newton_m2 * std::pow(factor, j));
+  if (best_memory < best) out.heat_memory = true, out.heat = found;
   if (!out.heat_memory) out.design = design(out.rates, 2);
   else
-    out.design = detail::memory_design(records, [&](std::size_t t) {
-      const auto& r = records[t];
-      return temperature_along(r.force_N, r.relative_m_s, r.phases, r.normal_N, r.rate_Hz, out.heat);
-    }, 2);
+    out.design = detail::memory_design(records, [&](std::size_t t) { return detail::heat_along(records[t], out.heat); }, 2);
   out.fit = fit_design(out.design, floor);
   return out;
 }

@@ -120,9 +120,11 @@ struct torsion_state {
     }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<torsion_values> starts;
-  for (const auto& [cost, v] : found)
+  for (const auto& candidate : found) {
+    const torsion_values& v = candidate.second;
     if (starts.size() < wanted && std::none_of(starts.begin(), starts.end(), [&](const auto& s) { return std::abs(std::log(s.speed_ratio / v.speed_ratio)) < 0.05; }))
       starts.push_back(v);
+  }
   return starts;
 }
 
