@@ -2,6 +2,7 @@
 #include "sweep_plane.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -140,8 +141,9 @@ std::string plane_svg(const sweep_plane& plane) {
   for (const auto& [index, p] : plane.points) longest = std::max(longest, p.transient_periods);
   std::ostringstream out;
   out << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 860 480' font-family='sans-serif' font-size='13'>\n<rect width='860' height='480' fill='#fff'/>\n";
-  for (const auto& [index, p] : plane.points) {
-    const auto* found = std::find_if(looks.begin(), looks.end(), [&](const look& l) { return p.regime == l.regime; });
+  for (const auto& [index, point] : plane.points) {
+    const sweep_result& p = point;
+    const auto* found = std::find_if(looks.begin(), looks.end(), [&p](const look& l) { return p.regime == l.regime; });
     const double depth = p.regime == "helmholtz" ? 1 - 0.7 * p.transient_periods / longest : 0.85;
     out << "<rect x='" << left + cell_x * static_cast<double>(index % plane.x.count) << "' y='"
         << top + height - cell_y * static_cast<double>(index / plane.x.count + 1) << "' width='" << cell_x << "' height='" << cell_y << "' fill='"
