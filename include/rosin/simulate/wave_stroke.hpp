@@ -86,6 +86,16 @@ bool run_waves(wave_string<T>& string, Law& law, const Motion& motion, wave_reco
   return true;
 }
 
+/// The signals at the contact through the low-pass.
+inline void sample_waves(modal_take& take, const stroke_steps& s, const modal_decimator& decimate) {
+  take.contact_force_N = decimate.lines(s.force);
+  take.centre_velocity_m_s = decimate.points(s.centre);
+  take.torsion_velocity_m_s = decimate.points(s.torsion);
+  take.rod_velocity_m_s = decimate.points(s.rod);
+  const bool warm = std::any_of(s.temperature.begin(), s.temperature.end(), [](double t) { return t != 0; });
+  if (warm) take.temperature_rise_K = decimate.points(s.temperature);
+}
+
 [[nodiscard]] inline std::vector<double> end_force(const fir& kernel, const std::vector<double>& sent, std::size_t samples, std::ptrdiff_t stride) {
   std::vector<double> out(samples, 0.0);
   const auto size = static_cast<std::ptrdiff_t>(sent.size());
@@ -119,7 +129,7 @@ template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
   wave_string<T> string{wave_kernels<T>{design.kernels}};
   law.reset();
   if (!detail::run_waves(string, law, motion, record, take, reach)) return failure{"simulation: the string's velocity grew without bound"};
-  detail::sample_steps(take, record.at_steps, decimate, {});
+  detail::sample_waves(take, record.at_steps, decimate);
   for (auto* signal : {&take.contact_force_N, &take.centre_velocity_m_s, &take.torsion_velocity_m_s, &take.rod_velocity_m_s, &take.temperature_rise_K})
     signal->resize(std::min(signal->size(), samples));
   take.force_near_N = detail::end_force(ends[0], record.sent[0], samples, settings.oversampling / stride);

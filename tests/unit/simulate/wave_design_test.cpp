@@ -16,11 +16,11 @@ const rosin::modal_rig rig{.string = {.length_m = 0.314,
 }  // namespace
 
 TEST_CASE("kernels fit together: nothing is asked for before it is known") {
-  for (const double position : {0.05, 0.137, 0.3, 0.8})
-    for (const int oversampling : {2, 8}) {
+  for (const double position : {0.05, 0.3, 0.8})
+    for (const int oversampling : {1, 4}) {
       CAPTURE(position);
       CAPTURE(oversampling);
-      const auto design = rosin::design_wave(rig, position, {.oversampling = oversampling, .band_Hz = 60e3});
+      const auto design = rosin::design_wave(rig, position, {.oversampling = oversampling, .band_Hz = 40e3});
       REQUIRE_MESSAGE(design, design.error());
       const auto& k = design->kernels;
       CHECK(k.block >= 1);
@@ -33,12 +33,12 @@ TEST_CASE("kernels fit together: nothing is asked for before it is known") {
 }
 
 TEST_CASE("a force that stays moves the string nowhere in the end") {
-  for (const int oversampling : {1, 4}) {
+  for (const int oversampling : {1, 2}) {
     const auto design = rosin::design_wave(rig, 0.3, {.oversampling = oversampling, .band_Hz = 60e3});
     REQUIRE(design);
     rosin::wave_string<double> string{design->kernels};
     double place = 0, early = 0;
-    const int steps = static_cast<int>(0.6 / design->kernels.step_s);
+    const int steps = static_cast<int>(0.4 / design->kernels.step_s);
     for (int n = 0; n < steps; ++n) {
       place += string.apply(1).centre_m_s * design->kernels.step_s;
       if (n == steps / 2) early = place;
