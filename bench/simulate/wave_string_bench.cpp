@@ -63,6 +63,7 @@ void whole_take(benchmark::State& state) {
 void plain(benchmark::State& state) { loop<double>(state, rig(false, false), curve()); }
 void stiff(benchmark::State& state) { loop<double>(state, rig(true, false), curve()); }
 void turning(benchmark::State& state) { loop<double>(state, rig(true, true), curve()); }
+void turning_single(benchmark::State& state) { loop<float>(state, rig(true, true), rosin::velocity_curve{rosin::two_exponential_curve<float>{}}); }
 void warm(benchmark::State& state) { loop<double>(state, rig(true, true), thermal()); }
 void modes_turning(benchmark::State& state) { modes(state, rig(true, true), curve()); }
 void modes_warm(benchmark::State& state) { modes(state, rig(true, true), thermal()); }
@@ -72,6 +73,7 @@ void modes_warm(benchmark::State& state) { modes(state, rig(true, true), thermal
 BENCHMARK(plain)->Name("waves/plain")->Arg(4)->Arg(16);
 BENCHMARK(stiff)->Name("waves/stiff")->Arg(4)->Arg(16);
 BENCHMARK(turning)->Name("waves/stiff, torsion")->Arg(4)->Arg(16);
+BENCHMARK(turning_single)->Name("waves/stiff, torsion, single precision")->Arg(4)->Arg(16);
 BENCHMARK(warm)->Name("waves/stiff, torsion, thermal")->Arg(4)->Arg(16);
 BENCHMARK(whole_take)->Name("waves/stiff, torsion, with the sensors' signals")->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond);
 BENCHMARK(modes_turning)->Name("modes/stiff, torsion")->Arg(4)->Arg(16);
