@@ -25,7 +25,7 @@ struct contact_findings {
   double friction_residual = 0, friction_floor = 0;   ///< the same of the law, as a coefficient of friction
   double independent = 0;                             ///< independent samples that stick
   double threshold = 0;                               ///< gains below it are what imperfect models of a contact as declared gain
-  double tone_threshold = 0;                          ///< the same for tones in time, which a string does not make by itself
+  double tone_threshold = 0;                          ///< the same for tones in time, which a string does not make by itself, and for laws of equal freedom
   bool as_declared = true;
   std::vector<std::string> warnings;
 };
@@ -116,7 +116,8 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   out.threshold = std::max(40.0, 0.035 * out.independent);
   out.tone_threshold = std::max(30.0, 0.01 * out.independent);
   for (const auto& h : out.hypotheses) {
-    const double needed = h.effect.find("ripple") != std::string::npos ? out.tone_threshold : out.threshold;
+    const bool lean = h.effect.find("ripple") != std::string::npos || h.statistic == "friction-residual";
+    const double needed = lean ? out.tone_threshold : out.threshold;
     if (h.decided && h.gain > needed && h.held_out_gain > needed / 2) out.as_declared = false;
   }
   return out;

@@ -48,7 +48,7 @@ namespace detail {
           {r.target.tail(rest), r.shared.bottomRows(rest), r.own.bottomRows(rest), {middle, r.sample.end()}}};
 }
 
-/// Log density of one part under the shared coefficients of the others; its own are its own.
+/// Log density of one part under the shared coefficients of the others; its own coefficients and the size of what is left are its own.
 [[nodiscard]] inline double predict_part(const std::vector<stick_rows>& parts, std::size_t which, double floor, const stick_prior& prior) {
   std::vector<stick_rows> others;
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -60,7 +60,7 @@ namespace detail {
   left.shared.resize(left.target.size(), 0);
   const auto seen = stick_regression({left}, floor);
   double sum = 0;
-  for (const double r : seen.residual.front()) sum += student_log_density(r, trained.scale);
+  for (const double r : seen.residual.front()) sum += student_log_density(r, seen.scale);
   return sum;
 }
 
