@@ -67,10 +67,11 @@ template <class Echo>
   return loop;
 }
 
-/// Poles of the partials below a frequency.
+/// Poles of the partials of which a round of the string leaves a hundredth or more; the others are hardly partials.
 [[nodiscard]] inline std::vector<std::complex<double>> poles_of(const std::vector<string_mode>& modes) {
   std::vector<std::complex<double>> poles;
-  for (const auto& mode : modes) poles.push_back(mode.pole());
+  for (const auto& mode : modes)
+    if (std::numbers::pi * mode.number * mode.inverse_quality < 4.6) poles.push_back(mode.pole());
   return poles;
 }
 
