@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/nonlinear_effects.hpp>
+
+#include <doctest/doctest.h>
+
+namespace {
+
+const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 1};
+const rosin::ringing_string string{659.69, 6.49e-5, {900, 0, 0}, -1};
+constexpr rosin::band limits{40e3, 50e3};
+
+}  // namespace
+
+TEST_CASE("a curved sensor is straightened exactly") {
+  const auto e = rosin::sensor_nonlinearity_effect(facts, 1);
+  std::vector<rosin::pluck_take> takes(1);
+  const std::vector<double> force{-0.8, -0.1, 0, 0.3, 0.9};
+  takes[0].force_N = {force, force};
+  for (double& y : takes[0].force_N[1]) y = 1.03 * (y + 0.04 * y * y);
+  takes[0].position = 0.3;
+  const rosin::pluck_layout layout(takes, {});
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
+  v[rosin::pluck_layout::gain_far] = std::log(1.03);
+  e.undo(takes, layout, v, 0.04);
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    CHECK(takes[0].force_N[1][i] == doctest::Approx(1.03 * force[i]).epsilon(1e-12));
+    CHECK(takes[0].force_N[0][i] == force[i]);
+  }
+}
+
+TEST_CASE("a string that is not stretched rings as its partials do") {
+  const double h = 1 / 512e3;
+  const auto force = rosin::stretching_pluck(string, 0.3, 0.01, limits, 200, h).run(0, h, 4, 2000);
+  const auto lines = rosin::pluck_lines(string, 0.3, 0, limits, 200);
+  for (const std::size_t i : {50U, 333U, 1999U})
+    for (std::size_t c = 0; c < 2; ++c) {
+      double sum = 0;
+      for (const auto& l : lines) sum += (l.residue[c] * std::exp(l.pole * (static_cast<double>(i) / 128e3))).real();
+      CHECK(force[c][i] == doctest::Approx(sum).epsilon(2e-3).scale(0.3));
+    }
+}
+
+TEST_CASE("a single mode under its own tension rises in pitch as Duffing's equation says: df/f = (3/8) e, half of it shared with a turn of phase") {
+  // q'' + w^2 (1 + s q^2) q = 0 oscillates at w (1 + 3 s A^2 / 8): amplitude A of the slope, s the stretch.
+  const rosin::ringing_string pure{100, 0, {1e9, 0, 0}, -1};
+  const double h = 1 / 64e3, stretch = 0.5, slope = 0.02;
+  const rosin::stretching_pluck one(pure, 0.5, slope, {150, 150}, 1, h);  // only the first partial
+  const auto force = one.run(stretch, h, 1, 64000)[0];
+  const double amplitude = slope * 2 / std::numbers::pi;
+  int crossings = 0;
+  double first = 0, last = 0;
+  for (std::size_t i = 1; i < force.size(); ++i)
+    if (force[i - 1] < 0 && force[i] >= 0) {
+      last = static_cast<double>(i - 1) + force[i - 1] / (force[i - 1] - force[i]);
+      if (crossings++ == 0) first = last;
+    }
+  const double f = (crossings - 1) / ((last - first) * h);
+  CHECK(f / 100 - 1 == doctest::Approx(3 * stretch * amplitude * amplitude / 8).epsilon(0.02));
+}
+
+TEST_CASE("what stretching puts in is taken out: larger with the square of the pluck") {
+  const auto e = rosin::tension_modulation_effect(facts, limits);
+  const auto change = [&](double newtons) {
+    std::vector<rosin::pluck_take> takes(1);
+    takes[0].rate_Hz = 128e3, takes[0].position = 0.3;
+    takes[0].force_N = {std::vector<double>(3000, 0.0), std::vector<double>(3000, 0.0)};
+    const rosin::pluck_layout layout(takes, {});
+    Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
+    v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002, v[layout.at(0, 1)] = std::log(newtons);
+    e.undo(takes, layout, v, 1e4);
+    double power = 0;
+    for (std::size_t i = 300; i < 900; ++i) power += std::pow(takes[0].force_N[0][i], 2);
+    return std::sqrt(power) / newtons;
+  };
+  CHECK(change(0.2) / change(0.1) == doctest::Approx(4).epsilon(0.05));
+}

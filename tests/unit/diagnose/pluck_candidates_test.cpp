@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/pluck_candidates.hpp>
+
+#include "plucked.hpp"
+
+#include <doctest/doctest.h>
+
+TEST_CASE("of several effects the one that is there comes first") {
+  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::pluck_options options{.internal_loss = false};
+  const auto layout = test::two_plucks(options);
+  const Eigen::VectorXd truth = test::values_of(layout, {std::log(21e3), std::log(14.0)});
+  rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
+  for (std::size_t t = 0; t < 2; ++t) data.takes.push_back(test::scene_pluck(layout, {rosin::sensor_resonance_effect(facts, 0)}, truth, t, 3e-4, 3 + t));
+  rosin::scene_fit plain;
+  plain.value = test::values_of(layout);
+  rosin::pluck_effect resonance = rosin::sensor_resonance_effect(facts, 0);
+  std::erase_if(resonance.starts, [](const auto& s) { return s[1] != 12; });
+  const auto fits = rosin::one_more_effect(data, plain, {rosin::skew_effect(facts), rosin::crosstalk_effect(facts), resonance, rosin::slow_release_effect(facts)}, false, {1e-3, 1e-3});
+  REQUIRE(fits.size() > 1);
+  CHECK(fits[0].effects[0].id() == "sensor-resonance@near");
+  CHECK(std::exp(fits[0].value[layout.size()]) == doctest::Approx(21e3).epsilon(1e-4));
+  CHECK(std::exp(fits[0].value[layout.size() + 1]) == doctest::Approx(14).epsilon(1e-3));
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/pluck_effects.hpp>
+#include <rosin/diagnose/scene_lines.hpp>
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+namespace {
+
+const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+
+}  // namespace
+
+TEST_CASE("every effect of the catalogue has a name of its own, starts inside its bounds, and changes what is recorded") {
+  rosin::pluck_scene bare;
+  bare.string = {659.69, 6.49e-5, {900, 0, 0}, 0};
+  const auto plain = rosin::scene_lines(bare, 0.3, {40e3, 60e3}, 80, {});
+  std::set<std::string> ids;
+  for (const auto& e : rosin::pluck_effects(facts)) {
+    CAPTURE(e.id());
+    if (e.name != "mains-hum") CHECK(ids.insert(e.id()).second);
+    REQUIRE_FALSE(e.starts.empty());
+    for (const auto& start : e.starts) {
+      REQUIRE(start.size() == e.parameters.size());
+      for (std::size_t i = 0; i < start.size(); ++i) {
+        CHECK(start[i] >= e.parameters[i].low);
+        CHECK(start[i] <= e.parameters[i].high);
+      }
+    }
+    rosin::pluck_scene with = bare;
+    std::vector<double> strong = e.starts.front();
+    if (e.name == "mains-hum") strong[1] = 0.1;
+    e.apply(with, strong.data(), 0);
+    if (e.name == "mains-hum") {
+      CHECK(with.hum.front().amplitude_N[0].real() == 0.1);
+      continue;
+    }
+    const auto poles = with.plain_string() ? std::vector<std::complex<double>>{} : rosin::string_poles(with, 60e3, 80);
+    const auto lines = rosin::scene_lines(with, 0.3, {40e3, 60e3}, 80, poles);
+    double change = lines.size() != plain.size() ? 1.0 : 0.0;
+    for (std::size_t i = 0; i < std::min(lines.size(), plain.size()); ++i)
+      for (std::size_t c = 0; c < 2; ++c)
+        change += std::abs(lines[i].residue[c] - plain[i].residue[c]) + std::abs(lines[i].pole - plain[i].pole) / std::abs(plain[i].pole);
+    CHECK(change > 1e-9);
+  }
+  CHECK(ids.size() >= 18);
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/scene_plucks.hpp>
+
+#include "plucked.hpp"
+
+#include <rosin/diagnose/pluck_effects.hpp>
+
+#include <doctest/doctest.h>
+
+TEST_CASE("without effects a scene is the plain string of the calibration") {
+  const auto layout = test::two_plucks({});
+  const Eigen::VectorXd v = test::values_of(layout);
+  const rosin::scene_plucks scene(layout, {0, 0}, {});
+  const rosin::plain_plucks plain(layout, {0, 0});
+  for (std::size_t part = 0; part < 2; ++part) {
+    const auto a = scene.lines(v, 1, part, 0.005, {40e3, 50e3}, 200), b = plain.lines(v, 1, part, 0.005, {40e3, 50e3}, 200);
+    REQUIRE(a.size() == b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+      for (std::size_t c = 0; c < 2; ++c) {
+        CHECK(std::abs(a[i].pole - b[i].pole) < 1e-9);
+        CHECK(std::abs(a[i].residue[c] - b[i].residue[c]) < 1e-9);
+      }
+  }
+}
+
+TEST_CASE("parameters of effects stand behind those of the plucks, in their units, and can be held") {
+  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const auto layout = test::two_plucks({});
+  const std::vector<rosin::pluck_effect> effects{rosin::sensor_resonance_effect(facts, 1), rosin::point_mass_effect(facts), rosin::hum_effect(facts, 50)};
+  const rosin::scene_plucks model(layout, {0, 0}, effects);
+  CHECK(model.first_of(1) == layout.size() + 2);
+  CHECK(model.name(layout.size()) == "frequency_Hz");
+  CHECK(model.concerns(layout.size(), 0));
+  CHECK(model.concerns(layout.size() + 6, 0));        // the first take's hum
+  CHECK_FALSE(model.concerns(layout.size() + 6, 1));
+  CHECK(model.is_free(layout.size() + 4));             // the bond of the mass
+  CHECK_FALSE(rosin::scene_plucks(layout, {0, 0}, effects, rosin::freedom::no_corrections).is_free(layout.size() + 4));
+  const rosin::scene_plucks held(layout, {0, 0}, effects, rosin::freedom::release_only);
+  CHECK(held.is_free(layout.at(1, rosin::pluck_layout::release)));
+  CHECK_FALSE(held.is_free(0));
+  CHECK_FALSE(held.is_free(layout.at(1, rosin::pluck_layout::offset_far)));
+  Eigen::VectorXd v = test::values_of(layout, std::vector<double>(5 + effects[2].parameters.size(), 0.0));
+  v[layout.size()] = std::log(18e3), v[layout.size() + 1] = std::log(9), v[layout.size() + 2] = 0.4, v[layout.size() + 3] = 1.75e-6;
+  const auto scene = model.scene(v, 0);
+  CHECK(scene.sensors[1].resonance_Hz == doctest::Approx(18e3));
+  CHECK(scene.scatterers[0].mass_s == doctest::Approx(1e-5));
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/string_poles.hpp>
+
+#include <doctest/doctest.h>
+
+namespace {
+
+rosin::pluck_scene scene() {
+  rosin::pluck_scene s;
+  s.string = {612.87, 6.6e-5, {850, 0, 0}, 0};
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("without anything on it the string has its own poles, with the residues of a pluck") {
+  const auto poles = rosin::string_poles(scene(), 50e3, 200);
+  const auto lines = rosin::decay_lines(scene(), 0.3264, poles);
+  const auto plain = rosin::pluck_lines(scene().string, 0.3264, 0, {64e3, 64e3}, static_cast<int>(poles.size()));
+  REQUIRE(poles.size() > 60);
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    CHECK(std::abs(poles[i] - plain[i].pole) < 1e-6 * std::abs(poles[i]));
+    for (std::size_t c = 0; c < 2; ++c) CHECK(std::abs(lines[i].residue[c] - plain[i].residue[c]) < 1e-5);
+  }
+}
+
+TEST_CASE("poles of a loaded string solve the modes' own equation, 1 + (M/Z) s^2 4 f0 sum sin^2 / (s^2 + w^2 (1 + i/Q)) = 0") {
+  auto with = scene();
+  constexpr double load_s = 3.7e-5, at = 0.4222;  // 6.5 mg on 0.174 N s/m
+  with.scatterers = {{.position = at, .mass_s = load_s}};
+  const auto poles = rosin::string_poles(with, 40e3, 200);
+  for (std::size_t i = 0; i < poles.size(); i += 7) {
+    const auto s = poles[i];
+    std::complex<double> sum = 0;
+    for (int n = 1; n < 100000; ++n) {
+      const double w = 2 * std::numbers::pi * with.string.partial_Hz(n);
+      sum += std::pow(std::sin(n * std::numbers::pi * at), 2) / (s * s + w * w * std::complex<double>(1, 1 / 850.0));
+    }
+    CHECK(std::abs(1.0 + load_s * s * s * 4.0 * with.string.fundamental_Hz * sum) < 2e-2);
+    CHECK(s.imag() < 2 * std::numbers::pi * with.string.partial_Hz(static_cast<int>(i) + 1));  // a mass lowers every partial
+  }
+}
+
+TEST_CASE("a support that resonates brings one pole of its own, and the pluck still begins from rest") {
+  auto with = scene();
+  with.ends[1].modes = {{.frequency_Hz = 2485, .q = 10.6, .per_mass_per_s = 0.1737 / 0.00325}};
+  const auto poles = rosin::string_poles(with, 50e3, 200);
+  CHECK(poles.size() == rosin::string_poles(scene(), 50e3, 200).size() + 1);
+  double near = 0, far = 0;
+  for (const auto& line : rosin::decay_lines(with, 0.3264, poles)) near += line.residue[0].real(), far += line.residue[1].real();
+  CHECK(near == doctest::Approx(1 - 0.3264).epsilon(0.03));  // as far as a series of 70 terms goes
+  CHECK(far == doctest::Approx(0.3264).epsilon(0.03));
+}
+
+TEST_CASE("from poles nearby the search comes to the same end") {
+  auto with = scene();
+  with.scatterers = {{.position = 0.31, .mass_s = 3e-5}};
+  const auto near = rosin::string_poles(with, 40e3, 200);
+  with.scatterers[0].mass_s *= 1 + 1e-5;
+  const auto warm = rosin::string_poles(with, 40e3, 200, near), cold = rosin::string_poles(with, 40e3, 200);
+  REQUIRE(warm.size() == cold.size());
+  for (std::size_t i = 0; i < warm.size(); ++i) CHECK(std::abs(warm[i] - cold[i]) < 1e-3);
+}
