@@ -136,7 +136,21 @@
 #include <rosin/diagnose/contact_stick_effects.hpp>
 #include <rosin/diagnose/contact_take.hpp>
 #include <rosin/diagnose/contact_width.hpp>
+#include <rosin/diagnose/corrected_take.hpp>
 #include <rosin/diagnose/friction_laws.hpp>
+#include <rosin/diagnose/nonlinear_effects.hpp>
+#include <rosin/diagnose/pluck_candidates.hpp>
+#include <rosin/diagnose/pluck_diagnosis.hpp>
+#include <rosin/diagnose/pluck_effect.hpp>
+#include <rosin/diagnose/pluck_effects.hpp>
+#include <rosin/diagnose/pluck_scene.hpp>
+#include <rosin/diagnose/pluck_score.hpp>
+#include <rosin/diagnose/scene_fit.hpp>
+#include <rosin/diagnose/scene_lines.hpp>
+#include <rosin/diagnose/scene_plucks.hpp>
+#include <rosin/diagnose/string_poles.hpp>
+#include <rosin/diagnose/string_response.hpp>
+#include <rosin/diagnose/tension_drift.hpp>
 
 #include <rosin/report/csv.hpp>
 #include <rosin/report/npy.hpp>
