@@ -76,7 +76,7 @@ struct sensor_response {
 };
 
 /// One harmonic of the mains as both channels see it: Re{ amplitude exp(i 2 pi f t) }, t from the take's beginning, newtons.
-struct hum_line {
+struct hum_phasor {
   double frequency_Hz = 0;
   std::array<std::complex<double>, 2> amplitude_N{};
 };
@@ -91,7 +91,7 @@ struct pluck_scene {
   double detuning = 0, coupling = 0;  ///< second polarisation: (f_z - f_y) / f_y; tan tan of the two angles
   std::array<sensor_response, 2> sensors;
   double crosstalk = 0;               ///< of each channel in the other
-  std::vector<hum_line> hum;
+  std::vector<hum_phasor> hum;
 
   [[nodiscard]] bool plain_string() const { return scatterers.empty() && ends[0].rigid() && ends[1].rigid(); }
 };

@@ -119,7 +119,7 @@ public:
     for (damped_line& line : out)
       for (std::size_t c = 0; c < 2; ++c) line.residue[c] *= gain(v, c);
     add_slow(out, s, v, take, part, begin_s);
-    for (const hum_line& h : s.hum) {
+    for (const hum_phasor& h : s.hum) {
       damped_line line{{0, 2 * std::numbers::pi * h.frequency_Hz}, h.amplitude_N};
       for (auto& r : line.residue) r *= std::exp(line.pole * begin_s);
       out.push_back(line);
