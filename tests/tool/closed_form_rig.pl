@@ -1,15 +1,26 @@
 #!/usr/bin/perl
 # A rig folder made from closed forms: three plucks and a stroke of an ideal string with constant Q, forces on both ends.
 #
-#   closed_form_rig.pl FOLDER [ac]        ac: the near channel is AC coupled, and says so
+#   closed_form_rig.pl FOLDER [ac] [short] [skew=SECONDS] [leak=FRACTION]
+#
+# ac: the near channel is AC coupled, and says so.  skew: the far channel of the plucks comes late by that much.  leak: that part of
+# each channel is in the other one too. The rig file says nothing of the last two.
+# short: plucks of a tenth of a second at 16 kHz, and no stroke.
 #
 # Pluck of 1 N at p:  F_near = sum_n 2/(n pi) sin(n pi p) Re exp(s_n t), F_far with (-1)^(n+1). Its negative derivative is the answer
 # to a force impulse, so a stroke is the convolution of the contact force with it. The force is smooth and goes into truth.csv.
 use strict;
 use warnings;
 
-my ($folder, $kind) = (@ARGV, '');
-my ($rate, $f0, $p, $q, $pi) = (48000, 240.31, 0.2987, 800, 4 * atan2(1, 1));
+my ($folder, @options) = @ARGV;
+my ($kind, $short, $skew, $leak) = ('', 0, 0, 0);
+for (@options) {
+  if (/^skew=(.+)/) { $skew = $1 }
+  elsif (/^leak=(.+)/) { $leak = $1 }
+  elsif ($_ eq 'short') { $short = 1 }
+  else { $kind = $_ }
+}
+my ($rate, $f0, $p, $q, $pi) = ($short ? 16000 : 48000, 240.31, 0.2987, 800, 4 * atan2(1, 1));
 my @gain = (1.013, 0.978);
 my $full = 2;
 srand 7;
@@ -35,7 +46,7 @@ sub write_wav {
   my ($name, $near, $far) = @_;
   my $data = '';
   for my $i (0 .. $#$near) {
-    for my $x ($gain[0] * $near->[$i], $gain[1] * $far->[$i]) {
+    for my $x ($gain[0] * ($near->[$i] + $leak * $far->[$i]), $gain[1] * ($far->[$i] + $leak * $near->[$i])) {
       my $v = int(32768 * ($x + noise()) / $full + 32768.5) - 32768;
       $data .= pack('v', ($v < -32768 ? -32768 : $v > 32767 ? 32767 : $v) & 0xffff);
     }
@@ -58,14 +69,17 @@ sub pluck {
   my ($name, $force, $release, $duration) = @_;
   my (@near, @far);
   for my $i (0 .. int($duration * $rate)) {
-    my $t = $i / $rate - $release;
-    my ($n, $f) = $t < 0 ? (1 - $p, $p) : (0, 0);
+    my ($t, $late) = ($i / $rate - $release, $i / $rate - $release - $skew);
+    my ($n, $f) = ($t < 0 ? 1 - $p : 0, $late < 0 ? $p : 0);
     if ($t >= 0) {
       for my $k (0 .. $#decay) {
         my $v = $weight[$k] * exp(-$decay[$k] * $t) * cos($omega[$k] * $t);
         $n += $v;
-        $f += $k % 2 ? -$v : $v;
+        $f += $k % 2 ? -$v : $v if !$skew;
       }
+    }
+    if ($skew && $late >= 0) {
+      $f += ($_ % 2 ? -1 : 1) * $weight[$_] * exp(-$decay[$_] * $late) * cos($omega[$_] * $late) for 0 .. $#decay;
     }
     push @near, $force * $n;
     push @far, $force * $f;
@@ -127,10 +141,10 @@ sub stroke {
 }
 
 mkdir $folder;
-pluck('pluck-1.wav', 1.0, 0.0101234, 0.6);
-pluck('pluck-2.wav', 0.5, 0.0115511, 0.25);
-pluck('pluck-3.wav', 0.75, 0.0107777, 0.25);
-stroke('bow-1.wav');
+pluck('pluck-1.wav', 1.0, 0.0101234, $short ? 0.1 : 0.6);
+pluck('pluck-2.wav', 0.5, 0.0115511, $short ? 0.1 : 0.25);
+pluck('pluck-3.wav', 0.75, 0.0107777, $short ? 0.1 : 0.25);
+stroke('bow-1.wav') if !$short;
 my $ac = $kind eq 'ac' ? ', ac_coupled_Hz = 3.0' : '';
 open my $rig, '>', "$folder/rig.toml" or die $!;
 print $rig <<"END";
@@ -172,6 +186,8 @@ kind = "pluck"
 file = "pluck-3.wav"
 force_N = 0.75
 hold_out = true
+END
+print $rig <<"END" if !$short;
 
 [[take]]
 name = "bow-1"
