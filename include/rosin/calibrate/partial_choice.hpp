@@ -46,7 +46,7 @@ inline double strongest_detuning(complex_span z, double rate_Hz, double toleranc
     if (std::norm(bins[k]) > std::norm(bins[best])) best = k, sign = 1;
     if (k > 0 && std::norm(bins[n - k]) > std::norm(bins[best])) best = n - k, sign = -1;
   }
-  return sign * turn * df * static_cast<double>(sign > 0 ? best : n - best);
+  return sign * full_turn * df * static_cast<double>(sign > 0 ? best : n - best);
 }
 
 inline std::vector<std::complex<double>> left_over(complex_span z, double rate_Hz, const line_model& m) {
@@ -94,7 +94,7 @@ inline bool makes_sense(const line_fit& two, const line_fit& one, complex_span z
   double sum = 0;
   for (const damped_part& p : two.model.parts) {
     if (!(p.decay_per_s > -0.5 / lasts) || p.decay_per_s > rate_Hz) return false;
-    if (std::abs(p.detuning_rad_s - one.model.parts[0].detuning_rad_s) > turn * tolerance_Hz) return false;
+    if (std::abs(p.detuning_rad_s - one.model.parts[0].detuning_rad_s) > full_turn * tolerance_Hz) return false;
     sum += p.energy(lasts);
   }
   return sum < 4 * whole;

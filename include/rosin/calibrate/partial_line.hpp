@@ -60,7 +60,7 @@ struct line_fit {
 namespace detail {
 
 using complex_span = std::span<const std::complex<double>>;
-inline constexpr double turn = 6.283185307179586476925;
+inline constexpr double full_turn = 6.283185307179586476925;
 
 struct line_normals {
   Eigen::MatrixXd matrix;
@@ -69,7 +69,7 @@ struct line_normals {
 };
 
 inline std::complex<double> line_rotation(const line_model& m, double t) {
-  return std::polar(1.0, turn * m.centre_Hz * m.glide.relative * m.glide.path_s(t));
+  return std::polar(1.0, full_turn * m.centre_Hz * m.glide.relative * m.glide.path_s(t));
 }
 
 /// Derivatives at one sample, one column a parameter; returns the model's value.
@@ -87,7 +87,7 @@ inline std::complex<double> line_row(const line_model& m, double t, bool glide_f
     row[at++] = i * t * y;
     sum += y;
   }
-  if (glide_free) row[at] = i * turn * m.centre_Hz * m.glide.path_s(t) * sum;
+  if (glide_free) row[at] = i * full_turn * m.centre_Hz * m.glide.path_s(t) * sum;
   return sum;
 }
 

@@ -80,15 +80,15 @@ struct line_noise {
 /// What a filter matched to the decay finds beside the line in what the fit left over.
 inline line_noise noise_beside(complex_span left, double rate_Hz, const damped_part& p, const bell_window& window) {
   const double lasts = static_cast<double>(left.size()) / rate_Hz, decay = std::max(p.decay_per_s, 0.0);
-  const double step = std::max(1 / lasts, 2 * decay / turn);
+  const double step = std::max(1 / lasts, 2 * decay / full_turn);
   double energy = 0, near = 0, all = 0;
   std::vector<double> powers;
   for (std::size_t j = 0; j < left.size(); ++j) energy += std::exp(-2 * decay * static_cast<double>(j) / rate_Hz);
   for (int k = -12; k <= 12; ++k) {
-    const double offset = p.detuning_rad_s / turn + k * step;
+    const double offset = p.detuning_rad_s / full_turn + k * step;
     if (k == 0 || std::abs(offset) > 0.55 * window.half_width_Hz) continue;
     const double gain = window(offset);
-    const std::complex<double> turn_by = std::polar(std::exp(-decay / rate_Hz), -(p.detuning_rad_s + turn * k * step) / rate_Hz);
+    const std::complex<double> turn_by = std::polar(std::exp(-decay / rate_Hz), -(p.detuning_rad_s + full_turn * k * step) / rate_Hz);
     std::complex<double> sum = 0, w = 1;
     for (const auto& r : left) sum += w * r, w *= turn_by;
     powers.push_back(std::norm(sum) / (energy * gain * gain));
@@ -139,21 +139,21 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
     const double w = part.energy(lasts) / energy;
     detuning += w * part.detuning_rad_s;
     p.decay_per_s += w * part.decay_per_s;
-    const auto gain = t.window(std::complex<double>{part.detuning_rad_s, part.decay_per_s} / detail::turn);
+    const auto gain = t.window(std::complex<double>{part.detuning_rad_s, part.decay_per_s} / detail::full_turn);
     power += std::norm(part.amplitude / gain);
     loudness[at] = part.amplitude.real() / std::norm(gain);
     loudness[at + 1] = part.amplitude.imag() / std::norm(gain);
     slope[at + 2] = w;
-    mean[at + 3] = w / detail::turn;
+    mean[at + 3] = w / detail::full_turn;
     at += 4;
   }
   double df2 = 0, da2 = 0;  // spread of the two lines
   for (const damped_part& part : t.fit.model.parts) {
     const double w = part.energy(lasts) / energy;
-    df2 += w * std::pow((part.detuning_rad_s - detuning) / detail::turn, 2);
+    df2 += w * std::pow((part.detuning_rad_s - detuning) / detail::full_turn, 2);
     da2 += w * std::pow(part.decay_per_s - p.decay_per_s, 2);
   }
-  p.frequency_Hz = t.fit.model.centre_Hz + detuning / detail::turn;
+  p.frequency_Hz = t.fit.model.centre_Hz + detuning / detail::full_turn;
   p.spread_Hz = std::sqrt(df2);
   p.spread_per_s = std::sqrt(da2);
   p.frequency_sd = std::sqrt(mean.dot(covariance * mean) + df2);
@@ -161,7 +161,7 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
   p.amplitude = std::sqrt(power);
   p.amplitude_sd = std::sqrt(loudness.dot(covariance * loudness) / power);
   p.doubled = t.fit.model.parts.size() > 1;
-  if (p.doubled) p.split_Hz = std::abs(t.fit.model.parts[0].detuning_rad_s - t.fit.model.parts[1].detuning_rad_s) / detail::turn;
+  if (p.doubled) p.split_Hz = std::abs(t.fit.model.parts[0].detuning_rad_s - t.fit.model.parts[1].detuning_rad_s) / detail::full_turn;
   p.signal_to_noise = energy * t.rate_Hz / noise.at_line;
   const double expected = noise.away * static_cast<double>(t.samples.size()) * detail::filled_with_noise(t.window, t.rate_Hz);
   p.misfit = std::max(t.fit.residual - 1.5 * expected, 0.0) / std::max(detail::energy_of(t.samples), 1e-300);
@@ -181,7 +181,7 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
   const double decay = one.model.parts[0].decay_per_s;
   const auto enough = decay > 0 ? std::max<std::size_t>(12, static_cast<std::size_t>(std::min(5 / decay * whole.rate_Hz, 1e9))) : length;
   if (enough < length) one = fit_line(z.first(length = enough), whole.rate_Hz, one.model);
-  if (!(std::abs(one.model.parts[0].detuning_rad_s) < detail::turn * 1.5 * tolerance_Hz)) return std::nullopt;
+  if (!(std::abs(one.model.parts[0].detuning_rad_s) < detail::full_turn * 1.5 * tolerance_Hz)) return std::nullopt;
   partial_track track{number, {z.begin(), z.begin() + static_cast<std::ptrdiff_t>(length)}, whole.rate_Hz, whole.window, one};
   track.fit = one_or_two_lines(track.samples, whole.rate_Hz, one, 1.5 * tolerance_Hz, detail::filled_with_noise(whole.window, whole.rate_Hz));
   return track;

@@ -62,7 +62,7 @@ inline line_fit gliding(const partial_track& t, double kappa, double expected) {
   line_fit best = fit_line(t.samples, t.rate_Hz, {{part}, t.fit.model.centre_Hz, {0, kappa}}, true);
   if (expected == 0) return best;
   const double heard = std::min(lasts, 0.7 / std::max(part.decay_per_s, 1e-3));  // where the energy is
-  part.detuning_rad_s -= turn * t.fit.model.centre_Hz * expected * pitch_glide{expected, kappa}.path_s(heard) / heard;
+  part.detuning_rad_s -= full_turn * t.fit.model.centre_Hz * expected * pitch_glide{expected, kappa}.path_s(heard) / heard;
   line_fit other = fit_line(t.samples, t.rate_Hz, {{part}, t.fit.model.centre_Hz, {expected, kappa}}, true);
   return other.residual < best.residual ? other : best;
 }
@@ -83,7 +83,7 @@ inline glides combined_glide(const std::vector<partial_track>& tracks, double ka
     const Eigen::MatrixXd covariance = line_covariance(t.fit, noise_of(t).at_line);
     g.each.y[i] = t.fit.model.glide.relative;
     g.each.variance[i] = std::max(covariance(4, 4), 1e-20);
-    g.share_Hz.push_back(-covariance(3, 4) / std::max(covariance(4, 4), 1e-300) / turn);
+    g.share_Hz.push_back(-covariance(3, 4) / std::max(covariance(4, 4), 1e-300) / full_turn);
   }
   const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) {
     y.setConstant(theta[0]);
