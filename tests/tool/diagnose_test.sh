@@ -73,7 +73,7 @@ says "channels near and far (forces on both terminations) are needed"
 variant gone 's/pluck-1\.wav/nothing.wav/'
 rm gone/pluck-2.wav
 expect 2 diagnose gone
-says "no pluck to compare with"
+says "pluck-1" "nothing.wav: no such file"
 variant broken 's/force_N = 1.0/force_N = "much"/'
 expect 2 diagnose broken
 says "rig.toml" "force_N"
