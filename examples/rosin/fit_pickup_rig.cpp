@@ -19,8 +19,8 @@ std::optional<measured_value> fact(const std::optional<double>& given, double re
   return measured_value{*given, *given * relative};
 }
 
-rosin::string_facts facts_of(const rosin::rig& rig, const rosin::rig_values& values, std::vector<std::string>& assumed) {
-  rosin::string_facts facts;
+rosin::pickup_string_facts facts_of(const rosin::rig& rig, const rosin::rig_values& values, std::vector<std::string>& assumed) {
+  rosin::pickup_string_facts facts;
   facts.length_m = fact(values.length_m);
   if (rig.string.tension_N) facts.tension_N = fact(values.tension_N);
   facts.diameter_m = fact(rig.string.diameter_m, 0.01);
@@ -50,7 +50,7 @@ json partials_json(const rosin::pickup_fit& fit) {
   return out;
 }
 
-void fit_take(const rosin::rig& rig, const rosin::take& take, const checked_take& read, const rosin::string_facts& facts, pickup_calibration& out) {
+void fit_take(const rosin::rig& rig, const rosin::take& take, const checked_take& read, const rosin::pickup_string_facts& facts, pickup_calibration& out) {
   for (const auto& signal : read.signals.signals) {
     if (!rings(signal.sensor.quantity)) continue;
     const auto fit = rosin::fit_pickup(signal.values, read.signals.sample_rate_Hz, rig.string.fundamental_Hz);

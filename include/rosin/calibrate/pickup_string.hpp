@@ -25,7 +25,7 @@ struct measured_value {
 };
 
 /// What is known of a string besides its sound. Of tension, linear density and (diameter, density) the first given is used.
-struct string_facts {
+struct pickup_string_facts {
   std::optional<measured_value> length_m, tension_N, linear_density_kg_m, diameter_m, density_kg_m3, youngs_modulus_Pa;
 };
 
@@ -61,7 +61,7 @@ inline std::optional<measured_value> combined(const std::vector<std::optional<me
 
 }  // namespace detail
 
-[[nodiscard]] inline string_in_SI string_from(const string_facts& facts, measured_value fundamental_Hz, measured_value inharmonicity) {
+[[nodiscard]] inline string_in_SI string_from(const pickup_string_facts& facts, measured_value fundamental_Hz, measured_value inharmonicity) {
   using values = std::vector<double>;
   using std::numbers::pi;
   const std::optional<measured_value> f0 = fundamental_Hz, b = inharmonicity;
