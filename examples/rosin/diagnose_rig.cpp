@@ -252,6 +252,7 @@ void take_over(const rosin::pluck_diagnosis& p, const rosin::rig_values& values,
   for (const auto& h : p.ranking) d.ranking.push_back({bare(h.ids), h.log_evidence / std::log(10.0)});
   d.held_out = p.held_out;
   d.before = p.before, d.noise_floor = p.floor;
+  d.residual = residuals_of(p);
   if (p.mismatched) d.after = p.after;
   if (!p.mismatched) return;
   d.take = p.data.takes[p.mismatch.take].name, d.channel = p.mismatch.channel == 0 ? "near" : "far";
@@ -286,7 +287,10 @@ void add_drift(const rosin::tension_drift& t, rig_diagnosis& d) {
   m.parameters = {{"relative", t.relative, t.sd}};
   m.statement = "The tension changed by " + rosin::detail::figure(100 * t.relative, "%+.3g") + " % between the plucks and the strokes.";
   d.missing.push_back(m);
-  d.ranking.insert(d.ranking.begin(), {{{"tension-drift"}, 0.0}});
+  // Of the force's two versions a few hundred samples a take are independent: ln L rises by n ln(before / after).
+  const double gain = 500 * std::log(t.delta_before / std::max(1e-6, t.delta_after)) / std::log(10.0);
+  for (auto& r : d.ranking) r.log10_evidence -= gain;
+  d.ranking.insert(d.ranking.begin(), {{"tension-drift"}, 0.0});
   if (d.missing.size() > 1) return;
   d.metric = "force-consistency", d.before = t.delta_before, d.after = t.delta_after;
 }
@@ -294,7 +298,10 @@ void add_drift(const rosin::tension_drift& t, rig_diagnosis& d) {
 /// Contact effects are taken up while they gain clearly.
 void add_contact(const rosin::contact_findings& found, rig_diagnosis& d) {
   for (const auto& line : found.warnings) d.warnings.push_back(line);
-  for (const auto& h : found.hypotheses) d.ranking.push_back({{h.effect}, 0.0});
+  double gained = 0;
+  if (!found.hypotheses.empty() && !found.as_declared) gained = std::max(0.0, found.hypotheses.front().evidence(found.independent));
+  for (auto& r : d.ranking) r.log10_evidence -= gained / std::log(10.0);
+  for (const auto& h : found.hypotheses) d.ranking.push_back({{h.effect}, found.as_declared ? std::min(-0.5, h.evidence(found.independent) / std::log(10.0)) : (h.evidence(found.independent) - gained) / std::log(10.0)});
   if (found.as_declared || found.hypotheses.empty()) return;
   const auto& best = found.hypotheses.front();
   if (!best.decided || best.gain <= found.threshold || best.held_out_gain <= found.threshold / 2) return;

@@ -15,7 +15,7 @@ namespace rosin {
 
 namespace detail {
 
-/// Least-squares fit of harmonics of the mains, taken out.
+/// Least-squares fit of harmonics of the mains, taken out. Weighed by a Hann window: what the string plays leaks little into it.
 inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmonics, double rate_Hz) {
   const auto n = static_cast<Eigen::Index>(x.size());
   Eigen::MatrixXd basis(n, 2 * harmonics + 1);
@@ -26,7 +26,9 @@ inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmon
       basis(i, 2 * h) = std::cos(turn), basis(i, 2 * h + 1) = std::sin(turn);
     }
   Eigen::Map<Eigen::VectorXd> data(x.data(), n);
-  Eigen::VectorXd amplitude = (basis.transpose() * basis).ldlt().solve(basis.transpose() * data);
+  const Eigen::ArrayXd turn = Eigen::ArrayXd::LinSpaced(n, 0.5, static_cast<double>(n) - 0.5) * (std::numbers::pi / static_cast<double>(n));
+  const Eigen::MatrixXd weighed = turn.sin().square().matrix().asDiagonal() * basis;
+  Eigen::VectorXd amplitude = (basis.transpose() * weighed).ldlt().solve(weighed.transpose() * data);
   amplitude[2 * harmonics] = 0;
   data -= basis * amplitude;
 }
@@ -73,8 +75,11 @@ inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::arra
     at += static_cast<Eigen::Index>(e.parameters.size());
   }
   const pluck_scene scene = scene_plucks(data.layout, data.guess.ac_coupled_Hz, fit.effects).scene(fit.value, 0);
-  if (!scene.hum.empty())
-    for (auto& x : recorded) detail::take_out_hum(x, scene.hum.front().frequency_Hz, static_cast<int>(scene.hum.size()), rate_Hz);
+  if (!scene.hum.empty()) {  // more harmonics than plucks need to tell, but none near what the string itself does
+    const double mains_Hz = scene.hum.front().frequency_Hz;
+    const int harmonics = std::clamp(static_cast<int>(0.6 * scene.string.fundamental_Hz / mains_Hz), 1, 12);
+    for (auto& x : recorded) detail::take_out_hum(x, mains_Hz, harmonics, rate_Hz);
+  }
   if (const double c = scene.crosstalk; c != 0)
     for (std::size_t i = 0; i < recorded[0].size(); ++i) {
       const std::array<double, 2> gain{std::exp(fit.value[pluck_layout::gain_near]), std::exp(fit.value[pluck_layout::gain_far])};

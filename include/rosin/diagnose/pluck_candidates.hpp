@@ -53,6 +53,15 @@ inline std::vector<scored_start> best_starts(const pluck_score& test, const scen
   return peaks;
 }
 
+/// Marks the effects with the highest gains: only these are worth a fit.
+inline void note_foremost(const std::vector<double>& gains, std::size_t most, std::vector<bool>& foremost) {
+  std::vector<std::size_t> order(gains.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gains[a] > gains[b]; });
+  for (std::size_t k = 0; k < std::min(most, order.size()); ++k)
+    if (gains[order[k]] > 0) foremost[order[k]] = true;
+}
+
 inline Eigen::VectorXd extended(const Eigen::VectorXd& value, const pluck_effect& e, const std::vector<double>& start) {
   Eigen::VectorXd v(value.size() + static_cast<Eigen::Index>(start.size()));
   v.head(value.size()) = value;
@@ -89,6 +98,7 @@ inline void prefer_over_one_horizon(const scene_data& data, std::vector<scene_fi
   using stages = std::vector<fit_stage>;
   const stages looks = strong ? stages{{1000, 3, true, {}}, {1000, 8, true, {}}, {12, 8, false, {}}} : stages{{1000, 1e9, true, {}}};
   std::vector<std::vector<detail::scored_start>> starts(catalogue.size());
+  std::vector<bool> foremost(catalogue.size(), false);
   for (const fit_stage& look : looks) {
     auto problem = data.problem(already.effects, already.value, {look.partials, look.periods, look.filtered, freedom::no_corrections}, noise);
     Eigen::VectorXd value = already.value;
@@ -96,14 +106,19 @@ inline void prefer_over_one_horizon(const scene_data& data, std::vector<scene_fi
     detail::descend(problem, problem.model(), already.value, value, 15, 1e-2, iterations);
     if (look.filtered) problem.set_noise(problem.assess(value).noise);
     const pluck_score test(problem, value);
+    std::vector<double> gains(catalogue.size(), 0.0);
     for (std::size_t i = 0; i < catalogue.size(); ++i) {
       if (catalogue[i].strength < -1) {  // begins from nothing
         if (starts[i].empty()) starts[i].push_back({catalogue[i].starts[0], 0});
         continue;
       }
       const scene_plucks with(data.layout, data.guess.ac_coupled_Hz, detail::with_one_more(already.effects, catalogue[i]));
-      for (auto& s : detail::best_starts(test, with, catalogue[i], strong ? 2 : 1)) starts[i].push_back(std::move(s));
+      for (auto& s : detail::best_starts(test, with, catalogue[i], strong ? 2 : 1)) {
+        gains[i] = std::max(gains[i], s.gain);
+        starts[i].push_back(std::move(s));
+      }
     }
+    detail::note_foremost(gains, strong ? 6 : 12, foremost);
   }
 
   const stages slowly{{6, 5, false, {}}, {12, 8, false, {}}, {24, 12, false, {}}, {1000, 12, true, {}}}, at_once{{1000, 12, true, {}}};
@@ -116,6 +131,7 @@ inline void prefer_over_one_horizon(const scene_data& data, std::vector<scene_fi
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     scene_fit best;
     double least = 1e300;
+    if (!foremost[i] && catalogue[i].strength >= -1) continue;
     for (const auto& start : starts[i])
       for (const stages& how : strong ? std::vector<stages>{slowly, at_once} : std::vector<stages>{{{1000, 1e9, true, {}}}}) {
         scene_fit f = fit_scene(data, detail::with_one_more(already.effects, catalogue[i]), detail::extended(already.value, catalogue[i], start.values),

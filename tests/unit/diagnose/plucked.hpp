@@ -44,7 +44,7 @@ inline rosin::pluck_take scene_pluck(const rosin::pluck_layout& layout, const st
   const auto first = static_cast<std::size_t>(std::ceil(model.release_s(v, which) * rate));
   for (std::size_t part = 0; part < 2; ++part) {
     const std::size_t begin = part == 0 ? 0 : first, end = part == 0 ? first : frames;
-    const auto lines = model.lines(v, which, part, static_cast<double>(begin) / rate, {40e3, 60e3}, 160);
+    const auto lines = model.lines(v, which, part, static_cast<double>(begin) / rate, {60e3, 63e3}, 160);
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t c = 0; c < 2; ++c)
         for (const auto& line : lines) take.force_N[c][i] += (line.residue[c] * std::exp(line.pole * (static_cast<double>(i - begin) / rate))).real();
