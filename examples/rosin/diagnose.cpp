@@ -5,6 +5,7 @@
 #include "calibration_file.hpp"
 #include "commands.hpp"
 #include "diagnose_rig.hpp"
+#include "report_figure.hpp"
 
 #include <iostream>
 #include <memory>
@@ -14,7 +15,7 @@ namespace tool {
 namespace {
 
 struct options {
-  std::string rig, json_file;
+  std::string rig, json_file, report;
   bool force = false;
 };
 
@@ -42,8 +43,11 @@ void print_text(const rig_diagnosis& d) {
 
 exit_code run(const options& given, provenance from) {
   const bool as_json = given.json_file == "-";
-  if (!given.json_file.empty())
-    if (const auto why = may_write_file(given.json_file, given.force)) return fail(why->message, as_json);
+  for (const auto* file : {&given.json_file, &given.report})
+    if (!file->empty())
+      if (const auto why = may_write_file(*file, given.force)) return fail(why->message, as_json);
+  if (!given.report.empty())
+    if (const auto why = cannot_draw()) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
   if (!folder->rig.has_both_forces()) return fail(folder->rig.file + ": channels near and far (forces on both terminations) are needed", as_json);
@@ -51,6 +55,8 @@ exit_code run(const options& given, provenance from) {
   if (!found) return fail(found.error(), as_json);
   if (!given.json_file.empty())
     if (const auto why = save_json(given.json_file, to_json(*found, from), given.force)) return fail(why->message);
+  if (!given.report.empty())
+    if (const auto why = write_diagnosis_report(given.report, given.force, *found, from)) return fail(why->message, as_json);
   for (const auto& line : found->warnings) std::cerr << "rosin: warning: " << line << '\n';
   if (!as_json) print_text(*found);
   return exit_code::ok;
@@ -63,6 +69,7 @@ void add_diagnose(CLI::App& app, exit_code& result) {
   CLI::App* command = app.add_subcommand("diagnose", "Say what physics the declared model leaves out");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
   command->add_option("--json", given->json_file, "Write the diagnosis to FILE; without one, or with -, to standard output")->expected(0, 1)->default_str("-")->type_name("FILE");
+  command->add_option("--report", given->report, "Write a page with figures (needs gnuplot)")->type_name("FILE.html");
   add_force_option(*command, given->force);
   command->footer(
       "The model that [model] declares is fitted to the plucks; what is left is set against every effect of the catalogue,\n"

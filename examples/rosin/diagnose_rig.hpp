@@ -6,7 +6,13 @@
 
 #include "rig_input.hpp"
 
+#include <rosin/propagate/band.hpp>
+
 #include <array>
+
+namespace rosin {
+struct pluck_diagnosis;
+}
 
 namespace tool {
 
@@ -31,6 +37,22 @@ struct ranked_model {
   double log10_evidence = 0;
 };
 
+/// One take's residual in both channels, from so many seconds after its beginning on.
+struct residual_series {
+  double begin_s = 0;
+  std::array<std::vector<double>, 2> force_N;
+};
+
+/// What the declared model and the corrected one leave of the pluck in which they part most, over its first periods.
+struct residual_picture {
+  std::string take;
+  double rate_Hz = 0, fundamental_Hz = 0;
+  rosin::band limits;                             ///< all of it was seen through
+  std::array<double, 2> noise_N{};                ///< standard deviation in that band
+  std::array<double, 2> noise_N_per_root_Hz{};
+  residual_series before, after;
+};
+
 struct rig_diagnosis {
   std::string title, verdict;
   std::vector<missing_effect> missing;
@@ -45,6 +67,7 @@ struct rig_diagnosis {
   std::optional<std::array<double, 2>> time_s, band_Hz;
   std::optional<double> position;
   double residual_over_noise = 0;
+  std::optional<residual_picture> residual;
   std::vector<std::string> assumed, warnings;
 };
 
@@ -53,7 +76,10 @@ struct rig_diagnosis {
 [[nodiscard]] std::string statement_of(const missing_effect& m);
 /// A parameter of the fit in the names and units of the format; the doubt in nominal values joins the standard deviation.
 [[nodiscard]] diagnosed_value in_si(const std::string& name, double value, double sd, const rosin::rig_values& values, double fundamental_Hz);
+[[nodiscard]] std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& plucks);
 [[nodiscard]] json to_json(const rig_diagnosis& d, const provenance& from);
+/// A page: the sentence, what is left before and after, parameters, runners-up, what could not be done. Needs gnuplot.
+[[nodiscard]] std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d, const provenance& from);
 [[nodiscard]] std::string sentence(const rig_diagnosis& d);
 
 }  // namespace tool

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+//
+// The page of a diagnosis: a sentence, the picture of the mismatch, the picture after, the parameters, the runners-up, what was not done.
+//
+#include "diagnose_rig.hpp"
+#include "report_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace tool {
+
+namespace {
+
+std::string number(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
+const char* ink(std::size_t c) { return c == 0 ? colour::near : colour::far; }
+std::string end_name(std::size_t c) { return c == 0 ? "near end" : "far end"; }
+
+/// The first four periods and what noise alone would leave, in mN over ms of the take.
+panel residual_panel(const residual_picture& r, const residual_series& s, std::size_t c, double half_height) {
+  panel p{std::string(c == 0 ? "(a) " : "(b) ") + end_name(c), "time in " + r.take + " / ms", "residual / mN", {}, {}, {}, std::pair{-half_height, half_height}, 220};
+  curve left{"recorded - model", {}, {}, ink(c), 1.2};
+  const auto end = static_cast<std::size_t>(4 * r.rate_Hz / r.fundamental_Hz);
+  for (std::size_t i = 0; i < std::min(end, s.force_N[c].size()); ++i) {
+    left.x.push_back(1e3 * (s.begin_s + static_cast<double>(i) / r.rate_Hz));
+    left.y.push_back(1e3 * s.force_N[c][i]);
+  }
+  const double from = 1e3 * r.before.begin_s, to = from + 4e3 / r.fundamental_Hz, two_sd = 2e3 * r.noise_N[c];
+  p.x_range = std::pair{from, to};
+  p.curves = {left, {"noise, two standard deviations", {from, to}, {two_sd, two_sd}, colour::model, 1, 2}, {"", {from, to}, {-two_sd, -two_sd}, colour::model, 1, 2}};
+  return p;
+}
+
+double half_height_of(const residual_picture& r) {
+  double most = 2.5 * std::max(r.noise_N[0], r.noise_N[1]);
+  const auto end = static_cast<std::size_t>(4 * r.rate_Hz / r.fundamental_Hz);
+  for (const auto& s : r.before.force_N)
+    for (std::size_t i = 0; i < std::min(end, s.size()); ++i) most = std::max(most, std::abs(s[i]));
+  return 1.1e3 * most;
+}
+
+figure residual_figure(const residual_picture& r, const residual_series& s, const rig_diagnosis& d) {
+  figure f;
+  for (std::size_t c = 0; c < 2; ++c) {
+    panel p = residual_panel(r, s, c, half_height_of(r));
+    if (d.time_s && d.take == r.take && d.channel == (c == 0 ? "near" : "far")) p.heavy = {{1e3 * (*d.time_s)[0], 1e3 * (*d.time_s)[1]}};
+    f.panels.push_back(p);
+  }
+  f.share_axis();
+  return f;
+}
+
+/// N per root Hz over the whole stretch: Hann windows of four periods that overlap by half, averaged.
+std::vector<double> density(const std::vector<double>& x, double rate_Hz, std::size_t window, std::size_t bins) {
+  std::vector<double> out(bins, 0.0);
+  window = std::min(window, x.size());
+  if (window < 8) return out;
+  std::vector<double> hann(window);
+  for (std::size_t i = 0; i < window; ++i) hann[i] = 1 - std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(window));
+  double count = 0;
+  for (std::size_t at = 0; at + window <= x.size(); at += window / 2, ++count)
+    for (std::size_t k = 0; k < bins; ++k) {
+      const auto turn = std::polar(1.0, -std::numbers::pi * static_cast<double>(k) / static_cast<double>(bins));
+      std::complex<double> sum = 0;
+      for (std::size_t i = window; i-- > 0;) sum = sum * turn + hann[i] * x[at + i];
+      out[k] += std::norm(sum);
+    }
+  for (double& v : out) v = std::sqrt(2 * v / (count * 1.5 * static_cast<double>(window) * rate_Hz));
+  return out;
+}
+
+curve spectrum(const std::string& name, const std::vector<double>& x, const residual_picture& r, const char* colour, double width, int dash) {
+  curve c{name, {}, {}, colour, width, dash};
+  const auto window = static_cast<std::size_t>(4 * r.rate_Hz / r.fundamental_Hz);
+  const std::size_t bins = std::clamp<std::size_t>(window / 2, 64, 1024);
+  const std::vector<double> y = density(x, r.rate_Hz, window, bins);
+  for (std::size_t k = 1; k < bins; ++k) {
+    const double hz = 0.5 * r.rate_Hz * static_cast<double>(k) / static_cast<double>(bins);
+    if (hz > r.limits.stop_Hz) break;
+    c.x.push_back(1e-3 * hz);
+    c.y.push_back(20 * std::log10(std::max(1e-12, y[k])));
+  }
+  return c;
+}
+
+figure spectrum_figure(const residual_picture& r, const rig_diagnosis& d, bool corrected) {
+  figure f;
+  for (std::size_t c = 0; c < 2; ++c) {
+    panel p{std::string(c == 0 ? "(a) " : "(b) ") + end_name(c), "frequency / kHz", "dB re 1 N / root Hz", {}, {}, {}, {}, 230};
+    p.curves.push_back(spectrum(corrected ? "as declared" : "left", r.before.force_N[c], r, ink(c), 1.5, 1));
+    if (corrected) p.curves.push_back(spectrum("corrected", r.after.force_N[c], r, colour::model, 1.2, 1));
+    const double level = 20 * std::log10(r.noise_N_per_root_Hz[c]);
+    p.curves.push_back({"noise", {0, 1e-3 * r.limits.pass_Hz}, {level, level}, colour::declared, 1.4, 2});
+    p.x_range = std::pair{0.0, 1e-3 * r.limits.stop_Hz};
+    if (d.band_Hz && d.take == r.take && d.channel == (c == 0 ? "near" : "far")) p.heavy = {{1e-3 * (*d.band_Hz)[0], 1e-3 * std::min((*d.band_Hz)[1], r.limits.stop_Hz)}};
+    f.panels.push_back(p);
+  }
+  f.share_axis();
+  const double seconds = static_cast<double>(r.before.force_N[0].size()) / r.rate_Hz;
+  f.caption = "Spectrum of what is left over the first " + number(1e3 * seconds, "%.0f") + " ms (Hann windows of four periods), and the level of the noise.";
+  if (!f.panels[0].heavy.empty() || !f.panels[1].heavy.empty()) f.caption += " The bar marks the band that holds most of it where the residual is largest.";
+  return f;
+}
+
+void add_figures(const rig_diagnosis& d, report_page& page) {
+  if (!d.residual) return;
+  const residual_picture& r = *d.residual;
+  const bool corrected = d.after && d.time_s && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) { return r.before.force_N != r.after.force_N; });
+  figure before = residual_figure(r, r.before, d);
+  before.caption = "What the declared model leaves of " + r.take + " over its first periods, both ends, up to " + number(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
+  if (d.time_s) before.caption += " The bar marks where it is largest; over the stretch that was fitted it is " + number(d.residual_over_noise) + " times the noise.";
+  else before.caption += " It is within the noise: the plucks show no mismatch.";
+  page.figures.push_back(before);
+  if (corrected) {
+    figure after = residual_figure(r, r.after, d);
+    after.caption = "The same, same axes, with the model corrected by what was found.";
+    page.figures.push_back(after);
+  }
+  page.figures.push_back(spectrum_figure(r, d, corrected));
+}
+
+std::string list_of(const std::vector<std::string>& names, const char* none) {
+  std::string out;
+  for (const auto& n : names) out += (out.empty() ? "" : ", ") + n;
+  return out.empty() ? none : out;
+}
+
+std::string with_interval(const diagnosed_value& p) {
+  if (!(std::isfinite(p.sd) && p.sd > 0)) return number(p.value, "%.6g");
+  return rounded(p.value, p.sd) + "   (95 %: " + rounded(p.value - 1.96 * p.sd, p.sd) + " to " + rounded(p.value + 1.96 * p.sd, p.sd) + ")";
+}
+
+void add_fit(const rig_diagnosis& d, report_page& page) {
+  page.result.emplace_back("verdict", d.verdict);
+  const std::string where = d.metric == "pluck-residual" ? " of " + list_of(d.held_out, "the fitted plucks") : std::string{};
+  page.result.emplace_back(d.metric + where + ", as declared", number(100 * d.before) + " %");
+  if (d.after) page.result.emplace_back(d.metric + where + ", corrected", number(100 * *d.after) + " %");
+  if (d.noise_floor > 0) page.result.emplace_back("the same from noise alone", number(100 * d.noise_floor) + " %");
+}
+
+void add_missing(const rig_diagnosis& d, report_page& page) {
+  for (const auto& m : d.missing) {
+    const std::string place = !m.end.empty() ? ", " + m.end + " end" : !m.channel.empty() ? ", channel " + m.channel : "";
+    page.result.emplace_back("missing: " + m.effect + place, "probability " + number(m.probability, "%.4g"));
+    for (const auto& p : m.parameters) page.result.emplace_back("    " + p.name, with_interval(p));
+    if (!m.indistinguishable_from.empty()) page.result.emplace_back("    cannot be told here from", list_of(m.indistinguishable_from, ""));
+  }
+}
+
+void add_ranking(const rig_diagnosis& d, report_page& page) {
+  std::size_t shown = 0;
+  for (const auto& r : d.ranking) {
+    if (++shown > 8) break;
+    std::string names;
+    for (const auto& e : r.effects) names += (names.empty() ? "" : " + ") + e;
+    page.result.emplace_back((shown == 1 ? "likeliest: " : "runner-up: ") + (names.empty() ? "as declared" : names), "log10 of the evidence " + number(r.log10_evidence, "%.4g"));
+  }
+  if (d.ranking.size() > shown) page.notes.push_back(std::to_string(d.ranking.size()) + " models were tried; the likeliest are in the table, all of them in the JSON file.");
+}
+
+void add_limits(const rig_diagnosis& d, report_page& page) {
+  if (d.verdict == "unexplained") page.notes.emplace_back("What was found, if anything, does not bring the takes that were set aside down to the noise. The place of what is left stands above; nothing is named for it.");
+  for (const auto& m : d.missing)
+    if (!m.indistinguishable_from.empty())
+      page.notes.push_back("These recordings cannot tell " + m.effect + " from " + list_of(m.indistinguishable_from, "") + ". Plucks at another place, longer or harder ones, may.");
+  if (d.held_out.size() == 1) page.notes.emplace_back("A single take was predicted; more plucks, at several places and of several strengths, would make the answer surer.");
+  if (d.metric != "pluck-residual") page.notes.emplace_back("The mismatch is between the strokes and the model; the figures show the pluck, which has to be right first.");
+}
+
+}  // namespace
+
+std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d, const provenance& from) {
+  report_page page;
+  page.title = d.title + ": diagnosis";
+  page.summary = sentence(d);
+  if (d.verdict == "no-mismatch") page.summary += " Nothing of the catalogue is missing from the declared model.";
+  page.warnings = d.warnings;
+  page.assumed = d.assumed;
+  add_fit(d, page);
+  add_missing(d, page);
+  add_ranking(d, page);
+  add_limits(d, page);
+  add_figures(d, page);
+  return write_page(path, force, page, from);
+}
+
+}  // namespace tool
