@@ -13,6 +13,8 @@
 #include <rosin/diagnose/pluck_score.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 
+#include <optional>
+
 namespace rosin {
 
 namespace detail {
@@ -81,7 +83,7 @@ inline void prefer_over_one_horizon(const scene_data& data, std::vector<scene_fi
   const double cost = cost_of(*brief, noise);
   for (const scene_fit& f : fits) {
     if (f.horizon_periods < 1e8) continue;
-    const scene_fit other = fit_scene(data, f.effects, f.value, {{1000, brief->horizon_periods, true, freedom::no_corrections}}, noise);
+    const scene_fit other = fit_scene(data, f.effects, f.value, {{1000, brief->horizon_periods, true}}, noise);
     if (cost_of(other, noise) < cost + 6) {
       fits.erase(brief);
       return;
@@ -92,65 +94,96 @@ inline void prefer_over_one_horizon(const scene_data& data, std::vector<scene_fi
 
 }  // namespace detail
 
-/// Fits of the effects `already` in the model and one more, the best first. `strong`: what is there is far off.
-[[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
-                                                            bool strong, std::array<double, 2> noise) {
-  using stages = std::vector<fit_stage>;
-  const stages looks = strong ? stages{{1000, 3, true, {}}, {1000, 8, true, {}}, {12, 8, false, {}}} : stages{{1000, 1e9, true, {}}};
-  std::vector<std::vector<detail::scored_start>> starts(catalogue.size());
-  std::vector<bool> foremost(catalogue.size(), false);
+namespace detail {
+
+/// Where to begin, effect by effect, and which effects are worth a fit.
+struct beginnings {
+  std::vector<std::vector<scored_start>> starts;
+  std::vector<bool> foremost;
+};
+
+inline beginnings find_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue, bool strong, std::array<double, 2> noise) {
+  beginnings out{std::vector<std::vector<scored_start>>(catalogue.size()), std::vector<bool>(catalogue.size(), false)};
+  const std::vector<fit_stage> looks = strong ? std::vector<fit_stage>{{1000, 3, true}, {1000, 8, true}, {12, 8, false}} : std::vector<fit_stage>{{}};
   for (const fit_stage& look : looks) {
-    auto problem = data.problem(already.effects, already.value, {look.partials, look.periods, look.filtered, freedom::no_corrections}, noise);
+    auto problem = data.problem(already.effects, already.value, look, noise);
     Eigen::VectorXd value = already.value;
     int iterations = 0;
-    detail::descend(problem, problem.model(), already.value, value, 15, 1e-2, iterations);
+    descend(problem, problem.model(), already.value, value, 15, 1e-2, iterations);
     if (look.filtered) problem.set_noise(problem.assess(value).noise);
     const pluck_score test(problem, value);
     std::vector<double> gains(catalogue.size(), 0.0);
     for (std::size_t i = 0; i < catalogue.size(); ++i) {
       if (catalogue[i].strength < -1) {  // begins from nothing
-        if (starts[i].empty()) starts[i].push_back({catalogue[i].starts[0], 0});
+        if (out.starts[i].empty()) out.starts[i].push_back({catalogue[i].starts[0], 0});
+        out.foremost[i] = true;
         continue;
       }
-      const scene_plucks with(data.layout, data.guess.ac_coupled_Hz, detail::with_one_more(already.effects, catalogue[i]));
-      for (auto& s : detail::best_starts(test, with, catalogue[i], strong ? 2 : 1)) {
+      const scene_plucks with(data.layout, data.guess.ac_coupled_Hz, with_one_more(already.effects, catalogue[i]));
+      for (auto& s : best_starts(test, with, catalogue[i], strong ? 2 : 1)) {
         gains[i] = std::max(gains[i], s.gain);
-        starts[i].push_back(std::move(s));
+        out.starts[i].push_back(std::move(s));
       }
     }
-    detail::note_foremost(gains, strong ? 6 : 12, foremost);
+    note_foremost(gains, strong ? 6 : 12, out.foremost);
   }
+  return out;
+}
 
-  const stages slowly{{6, 5, false, {}}, {12, 8, false, {}}, {24, 12, false, {}}, {1000, 12, true, {}}}, at_once{{1000, 12, true, {}}};
-  const freedom some = freedom::no_corrections;
-  const auto settled = [&](stages s) {
-    for (auto& one : s) one.free = some;
-    return s;
+/// The best of several ways to one effect. Where the model is far off: from the first partials of the first periods on, every start
+/// for two short stages and the best of them further; and all partials at once.
+inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fit& already, const pluck_effect& e, const std::vector<scored_start>& starts, bool strong,
+                                          std::array<double, 2> noise) {
+  const std::vector<pluck_effect> effects = with_one_more(already.effects, e);
+  std::optional<scene_fit> best;
+  const auto keep = [&](scene_fit f) {
+    const double cost = cost_of(f, noise);
+    if (cost < 1e299 && (!best || cost < cost_of(*best, noise))) best = std::move(f);
   };
-  std::vector<scene_fit> fits;
-  for (std::size_t i = 0; i < catalogue.size(); ++i) {
-    scene_fit best;
-    double least = 1e300;
-    if (!foremost[i] && catalogue[i].strength >= -1) continue;
-    for (const auto& start : starts[i])
-      for (const stages& how : strong ? std::vector<stages>{slowly, at_once} : std::vector<stages>{{{1000, 1e9, true, {}}}}) {
-        scene_fit f = fit_scene(data, detail::with_one_more(already.effects, catalogue[i]), detail::extended(already.value, catalogue[i], start.values),
-                                settled(how), noise);
-        if (const double cost = detail::cost_of(f, noise); cost < least) least = cost, best = std::move(f);
-      }
-    if (least < 1e299) fits.push_back(std::move(best));
+  const auto from = [&](const scored_start& s) { return extended(already.value, e, s.values); };
+  if (!strong) {
+    for (const auto& s : starts) keep(fit_scene(data, effects, from(s), {{}}, noise));
+    return best;
   }
-  const auto better = [&](const scene_fit& a, const scene_fit& b) { return detail::cost_of(a, noise) < detail::cost_of(b, noise); };
-  std::sort(fits.begin(), fits.end(), better);
-  if (fits.size() > 5) fits.resize(5);
+  for (const auto& s : starts) keep(fit_scene(data, effects, from(s), {{6, 5, false}, {12, 8, false}}, noise));
+  std::vector<scene_fit> further;
+  if (best) further.push_back(fit_scene(data, effects, best->value, {{24, 12, false}, {1000, 12, true}}, noise));
+  const auto highest = std::max_element(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
+  if (highest != starts.end()) further.push_back(fit_scene(data, effects, from(*highest), {{1000, 12, true}}, noise));
+  best.reset();
+  for (auto& f : further) keep(std::move(f));
+  return best;
+}
+
+/// Over all of the record, with corrections freed in the end. What lies far behind is not followed further.
+inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool strong, std::array<double, 2> noise) {
+  constexpr std::size_t most = 5, least = 2;
+  if (fits.size() > most) fits.resize(most);
+  while (strong && fits.size() > least && cost_of(fits.back(), noise) > 30 * cost_of(fits.front(), noise)) fits.pop_back();
   for (scene_fit& f : fits) {
-    stages rest = strong ? settled({{1000, 40, true, {}}, {1000, 1e9, true, {}}}) : stages{};
+    std::vector<fit_stage> rest;
+    if (strong) rest = {{1000, 40, true}, {}};
     const bool corrects = std::any_of(f.effects.begin(), f.effects.end(), [](const pluck_effect& e) {
       return std::any_of(e.parameters.begin(), e.parameters.end(), [](const effect_parameter& p) { return p.late; });
     });
     if (corrects) rest.push_back({1000, 1e9, true, freedom::all});
     if (!rest.empty()) f = fit_scene(data, f.effects, f.value, rest, noise);
   }
+}
+
+}  // namespace detail
+
+/// Fits of the effects `already` in the model and one more, the best first. `strong`: what is there is far off.
+[[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
+                                                            bool strong, std::array<double, 2> noise) {
+  const detail::beginnings begin = detail::find_beginnings(data, already, catalogue, strong, noise);
+  std::vector<scene_fit> fits;
+  for (std::size_t i = 0; i < catalogue.size(); ++i)
+    if (begin.foremost[i])
+      if (auto f = detail::first_fit(data, already, catalogue[i], begin.starts[i], strong, noise)) fits.push_back(*std::move(f));
+  const auto better = [&](const scene_fit& a, const scene_fit& b) { return detail::cost_of(a, noise) < detail::cost_of(b, noise); };
+  std::sort(fits.begin(), fits.end(), better);
+  detail::follow_up(data, fits, strong, noise);
   std::sort(fits.begin(), fits.end(), better);
   detail::prefer_over_one_horizon(data, fits, noise);
   return fits;

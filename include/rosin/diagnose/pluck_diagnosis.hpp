@@ -5,7 +5,8 @@
 // each time the one that explains most, as long as it is worth it:
 //
 //     significance   the gain in ln L, divided by the misfit that is left (model error counts as noise), is at least 14;
-//     worth          a further effect takes away at least two thirds of what the model so far leaves beyond the noise.
+//     worth          a further effect takes away at least two thirds of what the model so far leaves beyond the noise, and that is
+//                    at least a hundredth (in amplitude) of what there was to explain: no model of a bead is exact either.
 //
 // The first threshold holds the false-alarm rate of the whole search over the catalogue (its largest gain on plucks without
 // an effect is 3 to 7). Evidence is  ln L - (k / 2) ln n.  Takes that were not fitted are predicted: of them only the instant of
@@ -155,7 +156,6 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
   }
   std::vector<fit_stage> stages{{12, 8, false, freedom::release_only}, {1000, 12, true, freedom::release_only}, {1000, std::min(horizon, fit.horizon_periods), true, freedom::release_only}};
   const scene_fit seen = fit_scene(one, effects, v, stages, {1e-3, 1e-3});
-  if (getenv("DBG")) fprintf(stderr, "held release %.9f strength %.5f conv %d it %d ratio %.5f start %.9f\n", seen.value[one.layout.at(0, 0)], seen.value[one.layout.at(0, 1)], seen.converged, seen.iterations, seen.quality.residual_ratio[0], v[one.layout.at(0, 0)]);
   const auto problem = one.problem(effects, seen.value, stages.back(), {1, 1});
   double power = 0, samples = 0;
   for (const auto& part : {problem.part(0, 0), problem.part(0, 1)})
@@ -177,6 +177,7 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
   scene_fit now{{}, declared->value, declared->sd, declared->covariance, {}, {}, declared->horizon_periods, 0, true};
   const std::vector<pluck_effect> all = catalogue_for(*declared);
   std::array<double, 2> noise{1e300, 1e300};
+  double all_there_was = 0;
   for (int round = 0; round < most_effects; ++round) {
     std::vector<pluck_effect> catalogue;
     for (const pluck_effect& e : all)
@@ -193,7 +194,8 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
     double expected = 0;
     for (std::size_t c = 0; c < 2; ++c) expected += tried.quality.samples[c];
     const double left = std::max(0.0, detail::cost_of(tried, noise) - expected), was = std::max(1e-9, detail::cost_of(before, noise) - expected);
-    const bool worth = round == 0 || left < was / 3;
+    if (round == 0) all_there_was = was;
+    const bool worth = round == 0 || (left < was / 3 && was > 1e-4 * all_there_was);
     const double n_eff = expected;
     for (const scene_fit& f : fits)
       if (round == 0 || &f == &fits.front() || worth)
