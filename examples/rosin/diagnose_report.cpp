@@ -78,7 +78,7 @@ curve spectrum(const std::string& name, const std::vector<double>& x, const resi
   const std::vector<double> y = density(x, r.rate_Hz, window, bins);
   for (std::size_t k = 1; k < bins; ++k) {
     const double hz = 0.5 * r.rate_Hz * static_cast<double>(k) / static_cast<double>(bins);
-    if (hz > r.limits.stop_Hz) break;
+    if (hz > r.limits.pass_Hz) break;
     c.x.push_back(1e-3 * hz);
     c.y.push_back(20 * std::log10(std::max(1e-12, y[k])));
   }
@@ -92,9 +92,12 @@ figure spectrum_figure(const residual_picture& r, const rig_diagnosis& d, bool c
     p.curves.push_back(spectrum(corrected ? "as declared" : "left", r.before.force_N[c], r, ink(c), 1.5, 1));
     if (corrected) p.curves.push_back(spectrum("corrected", r.after.force_N[c], r, colour::model, 1.2, 1));
     const double level = 20 * std::log10(r.noise_N_per_root_Hz[c]);
-    p.curves.push_back({"noise", {0, 1e-3 * r.limits.pass_Hz}, {level, level}, colour::declared, 1.4, 2});
-    p.x_range = std::pair{0.0, 1e-3 * r.limits.stop_Hz};
-    if (d.band_Hz && d.take == r.take && d.channel == (c == 0 ? "near" : "far")) p.heavy = {{1e-3 * (*d.band_Hz)[0], 1e-3 * std::min((*d.band_Hz)[1], r.limits.stop_Hz)}};
+    p.curves.push_back({"noise", {0, 1e-3 * r.limits.pass_Hz}, {level, level}, colour::slip, 1.6, 2});
+    double top = level + 10;
+    for (const auto& k : p.curves) top = std::max(top, *std::max_element(k.y.begin(), k.y.end()) + 8);
+    p.y_range = std::pair{level - 15, top};
+    p.x_range = std::pair{0.0, 1e-3 * r.limits.pass_Hz};
+    if (d.band_Hz && d.take == r.take && d.channel == (c == 0 ? "near" : "far")) p.heavy = {{1e-3 * (*d.band_Hz)[0], 1e-3 * std::min((*d.band_Hz)[1], r.limits.pass_Hz)}};
     f.panels.push_back(p);
   }
   f.share_axis();
@@ -127,9 +130,13 @@ std::string list_of(const std::vector<std::string>& names, const char* none) {
   return out.empty() ? none : out;
 }
 
+/// Two digits more than the standard deviation leaves certain, and no row of zeros.
 std::string with_interval(const diagnosed_value& p) {
   if (!(std::isfinite(p.sd) && p.sd > 0)) return number(p.value, "%.6g");
-  return rounded(p.value, p.sd) + "   (95 %: " + rounded(p.value - 1.96 * p.sd, p.sd) + " to " + rounded(p.value + 1.96 * p.sd, p.sd) + ")";
+  const double certain = std::ceil(std::log10(std::max(1e-300, std::abs(p.value)) / p.sd));
+  const std::string form = "%." + std::to_string(static_cast<int>(std::clamp(certain, 0.0, 10.0)) + 2) + "g";
+  const auto text = [&](double x) { return number(x, form.c_str()); };
+  return text(p.value) + "   (95 %: " + text(p.value - 1.96 * p.sd) + " to " + text(p.value + 1.96 * p.sd) + ")";
 }
 
 void add_fit(const rig_diagnosis& d, report_page& page) {
@@ -143,7 +150,7 @@ void add_fit(const rig_diagnosis& d, report_page& page) {
 void add_missing(const rig_diagnosis& d, report_page& page) {
   for (const auto& m : d.missing) {
     const std::string place = !m.end.empty() ? ", " + m.end + " end" : !m.channel.empty() ? ", channel " + m.channel : "";
-    page.result.emplace_back("missing: " + m.effect + place, "probability " + number(m.probability, "%.4g"));
+    page.result.emplace_back("missing: " + m.effect + place, m.probability > 0.9999 ? "probability above 0.9999" : "probability " + number(m.probability, "%.4g"));
     for (const auto& p : m.parameters) page.result.emplace_back("    " + p.name, with_interval(p));
     if (!m.indistinguishable_from.empty()) page.result.emplace_back("    cannot be told here from", list_of(m.indistinguishable_from, ""));
   }
@@ -158,6 +165,7 @@ void add_ranking(const rig_diagnosis& d, report_page& page) {
     page.result.emplace_back((shown == 1 ? "likeliest: " : "runner-up: ") + (names.empty() ? "as declared" : names), "log10 of the evidence " + number(r.log10_evidence, "%.4g"));
   }
   if (d.ranking.size() > shown) page.notes.push_back(std::to_string(d.ranking.size()) + " models were tried; the likeliest are in the table, all of them in the JSON file.");
+  page.notes.emplace_back("Effects of the strokes are judged on the strokes, the others on the plucks: evidence compares exactly only within one kind.");
 }
 
 void add_limits(const rig_diagnosis& d, report_page& page) {

@@ -4,6 +4,7 @@
 //
 #include "diagnose_rig.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -66,7 +67,10 @@ std::string statement_of(const missing_effect& m) {
   if (m.effect == "massive-end") return "The " + m.end + " termination moves like a mass of " + v("mass_kg", 1e3) + " g.";
   if (m.effect == "ac-coupling") return "Both channels are AC coupled at " + v("cutoff_Hz") + " Hz.";
   if (m.effect == "sensor-resonance") return "The " + m.channel + " transducer itself resonates at " + v("frequency_Hz", 1e-3, "%.4g") + " kHz (Q " + v("q") + ").";
-  if (m.effect == "channel-skew") return "The far channel comes " + v("skew_s", 1e6) + " us late against the near one.";
+  if (m.effect == "channel-skew") {
+    const bool late = std::none_of(m.parameters.begin(), m.parameters.end(), [](const auto& p) { return p.name == "skew_s" && p.value < 0; });
+    return "The far channel comes " + v("skew_s", late ? 1e6 : -1e6) + (late ? " us late" : " us early") + " against the near one.";
+  }
   if (m.effect == "channel-crosstalk") return v("fraction", 100) + " % of each channel leaks into the other.";
   if (m.effect == "sensor-nonlinearity") return "The " + m.channel + " channel is curved: f + " + v("quadratic_per_N") + " f^2.";
   if (m.effect == "mains-hum") return "Mains hum at " + v("frequency_Hz", 1, "%.4g") + " Hz, " + v("amplitude_N", 1e3) + " mN.";

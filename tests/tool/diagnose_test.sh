@@ -25,7 +25,9 @@ explained='$d->{verdict} eq "explained" && @{$d->{missing}} == 1'
 improved='$d->{fit}{before} > 10 * $d->{fit}{noise_floor} && $d->{fit}{after} < 1.2 * $d->{fit}{noise_floor}'
 
 make late short skew=1e-5
-expect 0 diagnose late --json late.json
+page=
+if command -v gnuplot >/dev/null; then page="--report late.html"; else echo "skipped: the report, no gnuplot"; fi
+expect 0 diagnose late --json late.json $page
 says "a string of the tests: explained" "The far channel comes 10 us late against the near one." "channel-skew" "assumed: impedance_Ns_m"
 no_messages
 holds late.json "$explained" "$improved" '$m->{effect} eq "channel-skew"' 'about(value("skew_s"), 1e-5, 0.005)' \
@@ -33,6 +35,13 @@ holds late.json "$explained" "$improved" '$m->{effect} eq "channel-skew"' 'about
   '$d->{mismatch}{take} =~ /pluck-[12]/ && $d->{mismatch}{residual_over_noise} > 10' '$d->{mismatch}{time_s}[0] > 0.009' \
   '@{$d->{assumed}} > 0 && $d->{calibration}{fundamental_Hz}{value} > 240'
 expect 0 validate late.json
+if [ -n "$page" ]; then
+  # Before, after and spectra; the sentence; and nothing that comes from elsewhere.
+  same "$(grep -c '<svg' late.html)" 3
+  grep -q 'class="summary">The far channel comes 10 us late' late.html || { echo "FAILED: no sentence on the page"; failures=1; }
+  grep -q 'runner-up' late.html || { echo "FAILED: no runners-up on the page"; failures=1; }
+  ! grep -E '(src|href)="http' late.html || { echo "FAILED: the page needs the network"; failures=1; }
+fi
 
 # Another effect, to standard output. The interval misses once in twenty, so twice its half width is allowed.
 make leaky short leak=0.02
@@ -43,7 +52,7 @@ holds leaky.json "$explained" "$improved" '$m->{effect} eq "channel-crosstalk"' 
   'abs(value("fraction") - 0.02) < ($m->{parameters}{fraction}{ci95}[1] - $m->{parameters}{fraction}{ci95}[0])'
 expect 0 validate leaky.json
 
-# Nothing is missing, and there is a single pluck: its later half is what has to be predicted.
+# Nothing is missing, and there is a single pluck.
 make plain short
 perl -0pe 's/\n\[\[take\]\]\nname = "pluck-2".*//s' plain/rig.toml >single.toml
 mv single.toml plain/rig.toml
@@ -57,6 +66,8 @@ expect 0 validate plain.json
 before=$(sha256sum plain.json)
 expect 2 diagnose plain --json plain.json
 says "plain.json: exists already; --force overwrites it"
+expect 2 diagnose plain --report plain.json
+says "plain.json"
 same "$(sha256sum plain.json)" "$before"
 
 # What cannot be done is said.
