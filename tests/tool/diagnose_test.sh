@@ -25,9 +25,9 @@ explained='$d->{verdict} eq "explained" && @{$d->{missing}} == 1'
 improved='$d->{fit}{before} > 10 * $d->{fit}{noise_floor} && $d->{fit}{after} < 1.2 * $d->{fit}{noise_floor}'
 
 make late short skew=1e-5
-page=
-if command -v gnuplot >/dev/null; then page="--report late.html"; else echo "skipped: the report, no gnuplot"; fi
-expect 0 diagnose late --json late.json $page
+page=()
+if command -v gnuplot >/dev/null; then page=(--report late.html); else echo "skipped: the report, no gnuplot"; fi
+expect 0 diagnose late --json late.json "${page[@]}"
 says "a string of the tests: explained" "The far channel comes 10 us late against the near one." "channel-skew" "assumed: impedance_Ns_m"
 no_messages
 holds late.json "$explained" "$improved" '$m->{effect} eq "channel-skew"' 'about(value("skew_s"), 1e-5, 0.005)' \
@@ -35,7 +35,7 @@ holds late.json "$explained" "$improved" '$m->{effect} eq "channel-skew"' 'about
   '$d->{mismatch}{take} =~ /pluck-[12]/ && $d->{mismatch}{residual_over_noise} > 10' '$d->{mismatch}{time_s}[0] > 0.009' \
   '@{$d->{assumed}} > 0 && $d->{calibration}{fundamental_Hz}{value} > 240'
 expect 0 validate late.json
-if [ -n "$page" ]; then
+if [ ${#page[@]} -gt 0 ]; then
   # Before, after and spectra; the sentence; and nothing that comes from elsewhere.
   same "$(grep -c '<svg' late.html)" 3
   grep -q 'class="summary">The far channel comes 10 us late' late.html || { echo "FAILED: no sentence on the page"; failures=1; }
