@@ -42,8 +42,8 @@ inline std::vector<scored_start> best_starts(const pluck_score& test, const scen
       const effect_parameter& p = e.parameters[i];
       if (p.low >= 0 && s.mix <= 0) one.gain = 0;
       one.values[i] = std::clamp(start[i] * s.mix, p.low, p.high);
-    } else if (s.mix < 0.2) {
-      one.gain = 0;
+    } else {  // taken as it stands: what it gains at mix 1, on the parabola through 0 and mix
+      one.gain = s.mix > 0 ? std::max(0.0, s.gain * (2 / s.mix - 1 / (s.mix * s.mix))) : 0.0;
     }
     all.push_back(one);
   }

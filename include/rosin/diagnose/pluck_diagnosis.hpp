@@ -184,6 +184,11 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
       if (std::none_of(now.effects.begin(), now.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);
     const bool strong = round == 0 ? declared->horizon_periods < 1e8 || declared->residual_ratio[0] > 0.05 : now.quality.residual_ratio[0] > 0.1;
     const std::vector<scene_fit> fits = one_more_effect(d.data, now, catalogue, strong, weigh);
+    if (fits.empty() && round == 0) {  // nothing is worth a fit
+      d.base = fit_scene(d.data, {}, now.value, {{1000, now.horizon_periods, true}}, weigh);
+      noise = d.base.quality.noise;
+      d.ranking.push_back({{}, 0.0});
+    }
     if (fits.empty()) break;
     const scene_fit& tried = fits.front();
     const scene_fit before = fit_scene(d.data, now.effects, now.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh);
@@ -219,11 +224,11 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
   if (!d.ranking.empty())
     for (double top = d.ranking.front().log_evidence; auto& h : d.ranking) h.log_evidence -= top;
   const double typical = std::sqrt((noise[0] * noise[0] + noise[1] * noise[1]) / 2);
-  d.mismatch = detail::locate(d.data, d.base.value.size() > 0 ? d.base : now, typical);
+  d.mismatch = detail::locate(d.data, d.base, typical);
 
   double before2 = 0, after2 = 0, floor2 = 0;
   const std::vector<pluck_take>& judged = held.empty() ? takes : held;
-  scene_fit plain = d.base.value.size() > 0 ? d.base : now;
+  scene_fit plain = d.base;
   plain.horizon_periods = d.best.horizon_periods;
   for (const pluck_take& take : judged) {
     const auto b = detail::predicted(d.data, plain, take, typical), a = detail::predicted(d.data, d.best, take, typical);

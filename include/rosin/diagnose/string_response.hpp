@@ -27,7 +27,7 @@ class string_at {
 public:
   using complex = std::complex<double>;
 
-  string_at(const pluck_scene& scene, complex s) : scene_{&scene}, s_{s}, length_{0.5 / scene.string.fundamental_Hz} {
+  string_at(const pluck_scene& scene, complex s) : s_{s}, length_{0.5 / scene.string.fundamental_Hz} {
     const double epsilon = std::max(scene.string.stiffness_s2(), 1e-30);
     const complex w = s / complex(0, 1);
     q_ = phase_rate(w, complex(epsilon));
@@ -60,7 +60,6 @@ public:
   [[nodiscard]] complex sine() const { return sine_; }
 
 private:
-  const pluck_scene* scene_;
   complex s_;
   double length_, epsilon_ = 0;
   complex q_, K_, kappa_, sine_;

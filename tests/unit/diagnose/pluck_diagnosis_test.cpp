@@ -12,8 +12,8 @@ rosin::outcome<rosin::pluck_diagnosis> look(const std::vector<rosin::pluck_take>
   return rosin::diagnose_plucks(takes, {held}, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
     const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};
     auto all = rosin::catalogue_without({"bending-stiffness"}, facts, fit.limits);
-    // Scans over frequency and place are what takes long; here they are not what is tested.
-    std::erase_if(all, [](const rosin::pluck_effect& e) { return e.starts.size() > 20 || e.name == "tension-modulation"; });
+    // Scans over frequency and place, and searches for poles, are what takes long; here they are not what is tested.
+    std::erase_if(all, [](const rosin::pluck_effect& e) { return e.starts.size() > 20 || e.at_end || e.strength < -1; });
     return all;
   });
 }

@@ -18,7 +18,7 @@ inline const rosin::modal_rig plucked_rig{
 
 /// Recorded by 16-bit converters with 0.3 mN of noise, the far channel late by `skew_s` (a fraction of the partials' phases).
 inline rosin::pluck_take modal_pluck(double force_N, std::uint64_t seed, double release_duration_s = 0) {
-  const auto made = rosin::simulate_pluck(plucked_rig, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.1});
+  const auto made = rosin::simulate_pluck(plucked_rig, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.06});
   rosin::pluck_take take;
   take.name = "pluck-" + std::to_string(seed);
   take.rate_Hz = made->sample_rate_Hz;
@@ -37,7 +37,7 @@ inline rosin::pluck_take scene_pluck(const rosin::pluck_layout& layout, const st
   rosin::pluck_take take;
   take.name = "scene-" + std::to_string(which);
   take.rate_Hz = rate, take.strength_N = 1, take.position = 0.3;
-  const std::size_t frames = 12000;
+  const std::size_t frames = 8000;
   std::mt19937_64 random{seed};
   std::normal_distribution<double> noise{0, noise_N};
   for (auto& x : take.force_N) x.assign(frames, 0.0);
