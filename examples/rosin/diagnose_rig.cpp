@@ -295,9 +295,29 @@ void add_drift(const rosin::tension_drift& t, rig_diagnosis& d) {
   d.metric = "force-consistency", d.before = t.delta_before, d.after = t.delta_after;
 }
 
-/// Contact effects are taken up while they gain clearly.
-void add_contact(const rosin::contact_findings& found, rig_diagnosis& d) {
+/// A ripple at a multiple of a mains hum that was found is what is left of the hum.
+bool is_hum(const rosin::contact_hypothesis& h, const rig_diagnosis& d) {
+  const auto frequency = [](const auto& parameters) {
+    for (const auto& p : parameters)
+      if (p.name == "frequency_Hz") return p.value;
+    return 0.0;
+  };
+  if (h.effect != "speed-ripple" && h.effect != "normal-force-ripple") return false;
+  return std::any_of(d.missing.begin(), d.missing.end(), [&](const missing_effect& m) {
+    const double mains = m.effect == "mains-hum" ? frequency(m.parameters) : 0, ripple = frequency(h.parameters);
+    return mains > 0 && std::abs(ripple - mains * std::round(ripple / mains)) < 2;
+  });
+}
+
+/// A contact effect is taken up where it gains clearly.
+void add_contact(rosin::contact_findings found, rig_diagnosis& d) {
   for (const auto& line : found.warnings) d.warnings.push_back(line);
+  if (std::erase_if(found.hypotheses, [&](const auto& h) { return h.gain > found.threshold && is_hum(h, d); }) > 0) {
+    d.warnings.emplace_back("a ripple at a multiple of the mains' frequency: taken for what is left of the hum");
+    found.as_declared = std::none_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) {
+      return h.decided && h.gain > found.threshold && h.held_out_gain > found.threshold / 2;
+    });
+  }
   double gained = 0;
   if (!found.hypotheses.empty() && !found.as_declared) gained = std::max(0.0, found.hypotheses.front().evidence(found.independent));
   for (auto& r : d.ranking) r.log10_evidence -= gained / std::log(10.0);
