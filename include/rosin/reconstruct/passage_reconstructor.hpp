@@ -1,0 +1,250 @@
+// tier: freestanding
+// SPDX-License-Identifier: MIT
+//
+// The reconstruction sample by sample or block by block at less than half the work of streaming_reconstructor.hpp, for live use
+// and firmware: each of the four passages is filtered once, and both forces and both velocities are made of the four.
+//
+//     near --+--> G/D1 --> a1       force_near = a1 + b2      velocity_near = y * (a1 - b1) + n * force
+//            +--> G D1 --> b1       force_far  = a2 + b1      velocity_far  = y * (a2 - b2) + n * force
+//     far  --+--> G/D2 --> a2
+//            +--> G D2 --> b2       y = 1/(2 Z_f): even in time, short;   n, the near field: odd, short;   force: the mean
+//
+// The force is that of the whole-record reconstruction to rounding, the velocity too but for the error that y and n were designed
+// for. Fixed size, no heap, no libm. One version of the force alone, bow_version::near or far, asks for less look-ahead:
+//
+//     latency = reach of 1/D_j ahead + Short,    of 1/D_j: its transit time + half a kernel;    both versions: the longer one
+//
+// No less will do: before a transit time has passed no end knows of the contact, and half a kernel is what the band costs.
+//
+#pragma once
+
+#include <rosin/math/lanes.hpp>
+#include <rosin/reconstruct/streaming_reconstructor.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <span>
+
+namespace rosin {
+
+/// Which of the two versions of force and velocity is made; of one alone both fields of a frame hold it.
+enum class bow_version { both, near, far };
+
+/// Everything the run-time part has to be given (passage_design.hpp, or the header that `rosin fit --emit-header` writes).
+template <class T, std::size_t Taps, std::size_t Short>
+struct passage_coefficients {
+  std::array<streaming_kernel<T, Taps>, 4> passage{};  ///< near back, near out, far back, far out; counts are multiples of 4
+  std::array<T, Short + 1> admittance{};               ///< y: y[0] in the middle, y[k] on both sides of it
+  std::array<T, Short + 1> near_field{};               ///< n: + n[k] on the older, - n[k] on the newer side; n[0] = 0
+  std::size_t latency = 0;                             ///< frames
+  std::size_t reach = 0;                               ///< frames that one output depends on
+  bow_version version = bow_version::both;
+};
+
+/// The latest Length frames of some signals; each is kept twice in a row, so that a stretch of it never wraps.
+template <class T, std::size_t Signals, std::size_t Length>
+class doubled_lines {
+public:
+  constexpr void push(const std::array<T, Signals>& frame) noexcept {
+    head_ = head_ + 1 == Length ? 0 : head_ + 1;
+    for (std::size_t s = 0; s < Signals; ++s) line_[s][head_] = line_[s][head_ + Length] = frame[s];
+  }
+  template <std::size_t Count>
+  constexpr void push(const std::array<std::array<T, Count>, Signals>& frames) noexcept {
+    const std::size_t start = head_ + 1 == Length ? 0 : head_ + 1, fit = Length - start < Count ? Length - start : Count;
+    for (std::size_t s = 0; s < Signals; ++s) {
+      for (std::size_t i = 0; i < fit; ++i) line_[s][start + i] = line_[s][start + Length + i] = frames[s][i];
+      for (std::size_t i = fit; i < Count; ++i) line_[s][i - fit] = line_[s][Length + i - fit] = frames[s][i];
+    }
+    head_ = fit == Count ? start + Count - 1 : Count - fit - 1;
+  }
+  /// The sample that is `age` frames old, < Length; those after it follow.
+  [[nodiscard]] constexpr const T* at(std::size_t signal, std::size_t age) const noexcept {
+    return line_[signal].data() + head_ + Length - age;
+  }
+
+private:
+  std::array<std::array<T, 2 * Length>, Signals> line_{};
+  std::size_t head_ = 0;
+};
+
+namespace detail {
+
+/// Outputs of one run over the taps: what the registers hold, four sums at least.
+template <class T>
+inline constexpr std::size_t passage_chunk = register_lanes<T> == 1 ? 4 : (register_lanes<T> < 4 ? 8 : 16);
+
+/// sum_j taps[j] x[j]; count is a multiple of 4.
+template <class T>
+[[nodiscard]] T passage_dot(const T* taps, const T* x, std::size_t count) noexcept {
+  constexpr std::size_t width = register_lanes<T> == 1 ? 1 : 16 / sizeof(T);
+  using vector = typename lanes_of<T, width>::type;
+  std::array<vector, 4 / width> sum{};
+  for (std::size_t j = 0; j < count; j += 4)
+    for (std::size_t p = 0; p < sum.size(); ++p) {
+      vector a, b;
+      std::memcpy(&a, taps + j + p * width, sizeof a);
+      std::memcpy(&b, x + j + p * width, sizeof b);
+      sum[p] += a * b;
+    }
+  std::array<T, 4> lane;
+  std::memcpy(lane.data(), sum.data(), sizeof lane);
+  return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
+/// The same for x, x + 1, ...: a chunk of outputs at once, each tap fetched once.
+template <class T>
+void passage_fir(const T* taps, const T* x, std::size_t count, T* out) noexcept {
+  constexpr std::size_t width = register_lanes<T> < passage_chunk<T> ? register_lanes<T> : passage_chunk<T>;
+  constexpr std::size_t parts = passage_chunk<T> / width, sets = parts >= 4 ? 1 : 4 / parts;
+  using vector = typename lanes_of<T, width>::type;
+  std::array<std::array<vector, parts>, sets> sum{};
+  for (std::size_t j = 0; j < count; j += 4)
+#pragma GCC unroll 4
+    for (std::size_t t = 0; t < 4; ++t)
+#pragma GCC unroll 16
+      for (std::size_t p = 0; p < parts; ++p) {
+        vector in;
+        std::memcpy(&in, x + j + t + p * width, sizeof in);
+        sum[t % sets][p] += taps[j + t] * in;
+      }
+  for (std::size_t s = 1; s < sets; ++s)
+    for (std::size_t p = 0; p < parts; ++p) sum[0][p] += sum[s][p];
+  std::memcpy(out, sum[0].data(), sizeof sum[0]);
+}
+
+}  // namespace detail
+
+/// T: float or double. Taps: longest passage, a multiple of 4. Line: length of the delay lines. Short: half-length of y and n.
+template <class T, std::size_t Taps, std::size_t Line, std::size_t Short>
+class passage_reconstructor {
+public:
+  using input_type = termination_frame<T>;
+  using output_type = bow_frame<T>;
+  using coefficients_type = passage_coefficients<T, Taps, Short>;
+  /// Frames that are computed together where a block holds as many.
+  static constexpr std::size_t chunk = detail::passage_chunk<T>;
+  static_assert(Taps % 4 == 0, "kernels are run four taps at a time");
+
+  explicit passage_reconstructor(const coefficients_type& coefficients) noexcept : c_{coefficients} {}
+
+  /// Total on any input. What rests on a NaN, an infinity or on frames before the first is NaN, never made up.
+  output_type operator()(const input_type& frame) noexcept {
+    const T zero = (frame.near_N - frame.near_N) + (frame.far_N - frame.far_N);  // NaN where one is not finite
+    finite_ = zero == T(0) ? finite_ + (known() ? 0 : 1) : 0;
+    lines_.push({frame.near_N, frame.far_N});
+    std::array<T, 4> wave;
+    for (std::size_t p = 0; p < 4; ++p) wave[p] = detail::passage_dot(taps(p), samples(p, 0), c_.passage[p].count);
+    mixed_.push(mixed(wave));
+    return known() ? latest() : unknown();
+  }
+
+  /// The same frame by frame, quicker from `chunk` frames on. Both spans have one length.
+  void process(std::span<const input_type> in, std::span<output_type> out) noexcept {
+    std::size_t n = 0;
+    while (n < in.size()) {
+      const std::size_t count = in.size() - n < chunk ? in.size() - n : chunk;
+      if (count == chunk && known() && all_finite(in.data() + n)) run_chunk(in.data() + n, out.data() + n);
+      else
+        for (std::size_t i = n; i < n + count; ++i) out[i] = (*this)(in[i]);
+      n += count;
+    }
+  }
+
+  /// The latest output rests on finite samples only, and on as many as it needs: false at the beginning, and after a NaN or an
+  /// infinity until it has left the lines.
+  [[nodiscard]] bool known() const noexcept { return finite_ >= c_.reach; }
+
+  void reset() noexcept {
+    lines_ = {};
+    mixed_ = {};
+    finite_ = 0;
+  }
+
+  /// Frames by which the output lags.
+  [[nodiscard]] T latency() const noexcept { return static_cast<T>(c_.latency); }
+
+private:
+  enum signal : std::size_t { force_near, force_far, round_near, round_far, force, signals };
+
+  using row = std::array<T, chunk>;
+
+  static output_type unknown() noexcept {
+    constexpr T nan = std::numeric_limits<T>::quiet_NaN();
+    return {nan, nan, nan, nan};
+  }
+  static bool all_finite(const input_type* in) noexcept {
+    T zero = 0;
+    for (std::size_t i = 0; i < chunk; ++i) zero += (in[i].near_N - in[i].near_N) + (in[i].far_N - in[i].far_N);
+    return zero == T(0);
+  }
+  [[nodiscard]] const T* taps(std::size_t passage) const noexcept { return c_.passage[passage].taps.data(); }
+  /// The oldest sample under a passage's taps, as of `ago` frames before the latest.
+  [[nodiscard]] const T* samples(std::size_t passage, std::size_t ago) const noexcept {
+    const auto& k = c_.passage[passage];
+    return lines_.at(passage / 2, k.newest_age + k.count + ago - (k.count > 0 ? 1 : 0));
+  }
+
+  [[nodiscard]] std::array<T, signals> mixed(const std::array<T, 4>& w) const noexcept {
+    T near = w[0] + w[3], far = w[2] + w[1], there_and_back_near = w[0] - w[1], there_and_back_far = w[2] - w[3];
+    if (c_.version == bow_version::near) far = near, there_and_back_far = there_and_back_near;
+    if (c_.version == bow_version::far) near = far, there_and_back_near = there_and_back_far;
+    return {near, far, there_and_back_near, there_and_back_far, (near + far) / T(2)};
+  }
+
+  [[nodiscard]] output_type latest() const noexcept {
+    const T *f = mixed_.at(force, Short), *near = mixed_.at(round_near, Short), *far = mixed_.at(round_far, Short);
+    T velocity_near = c_.admittance[0] * near[0], velocity_far = c_.admittance[0] * far[0], near_field = 0;
+    for (std::ptrdiff_t k = 1; k <= static_cast<std::ptrdiff_t>(Short); ++k) {
+      const T y = c_.admittance[static_cast<std::size_t>(k)];
+      velocity_near += y * (near[-k] + near[k]);
+      velocity_far += y * (far[-k] + far[k]);
+      near_field += c_.near_field[static_cast<std::size_t>(k)] * (f[-k] - f[k]);
+    }
+    return {*mixed_.at(force_near, Short), *mixed_.at(force_far, Short), velocity_near + near_field, velocity_far + near_field};
+  }
+
+  void run_chunk(const input_type* in, output_type* out) noexcept {
+    std::array<row, 2> forces;
+    for (std::size_t i = 0; i < chunk; ++i) forces[0][i] = in[i].near_N, forces[1][i] = in[i].far_N;
+    lines_.push(forces);
+    std::array<row, 4> wave;
+    for (std::size_t p = 0; p < 4; ++p)
+      detail::passage_fir(taps(p), samples(p, chunk - 1), c_.passage[p].count, wave[p].data());
+    std::array<row, signals> mix;
+    for (std::size_t i = 0; i < chunk; ++i) {
+      const std::array<T, signals> m = mixed({wave[0][i], wave[1][i], wave[2][i], wave[3][i]});
+      for (std::size_t s = 0; s < signals; ++s) mix[s][i] = m[s];
+    }
+    mixed_.push(mix);
+    put_chunk(out);
+  }
+
+  /// latest(), for each frame of a chunk.
+  void put_chunk(output_type* out) const noexcept {
+    constexpr std::size_t middle = Short + chunk - 1;
+    const T *f = mixed_.at(force, middle), *near = mixed_.at(round_near, middle), *far = mixed_.at(round_far, middle);
+    row velocity_near, velocity_far;
+    for (std::size_t i = 0; i < chunk; ++i) velocity_near[i] = c_.admittance[0] * near[i], velocity_far[i] = c_.admittance[0] * far[i];
+    for (std::size_t k = 1; k <= Short; ++k) {
+      const T y = c_.admittance[k], n = c_.near_field[k];
+      const T *f0 = f - k, *f1 = f + k, *near0 = near - k, *near1 = near + k, *far0 = far - k, *far1 = far + k;
+      for (std::size_t i = 0; i < chunk; ++i) {
+        const T near_field = n * (f0[i] - f1[i]);
+        velocity_near[i] += y * (near0[i] + near1[i]) + near_field;
+        velocity_far[i] += y * (far0[i] + far1[i]) + near_field;
+      }
+    }
+    const T *force_n = mixed_.at(force_near, middle), *force_f = mixed_.at(force_far, middle);
+    for (std::size_t i = 0; i < chunk; ++i) out[i] = {force_n[i], force_f[i], velocity_near[i], velocity_far[i]};
+  }
+
+  coefficients_type c_;
+  doubled_lines<T, 2, Line> lines_;
+  doubled_lines<T, signals, 2 * Short + chunk> mixed_;
+  std::size_t finite_ = 0;
+};
+
+}  // namespace rosin
