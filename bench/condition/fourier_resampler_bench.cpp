@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Periodic records to other lengths: time, and the worst error against closed-form sums of forty cosines.
 #include <rosin/condition/fourier_resampler.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The streaming delays: time per sample, and the worst error against bandwidth that the documentation tables.
 #include <rosin/condition/fractional_delay.hpp>
 #include <rosin/condition/fractional_delay_design.hpp>

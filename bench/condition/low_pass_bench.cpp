@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The low-pass of a whole record: time for ten seconds at 128 kHz, and how far the mirrors at the ends are felt.
 #include <rosin/condition/low_pass.hpp>
 #include <rosin/propagate/band.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "overlap_save_cases.hpp"
 
 #include <rosin/adapt/fft_fftw.hpp>

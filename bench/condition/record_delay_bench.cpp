@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Delays of whole records: taps, worst error over fractions of a sample, and time for ten seconds at 128 kHz.
 #include <rosin/condition/record_delay.hpp>
 

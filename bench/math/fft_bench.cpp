@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Eigen's transforms, and where the chirp-z transform overtakes Eigen's butterfly for a prime radix: the bound in math/fft.hpp.
 #include "fft_cases.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fft_cases.hpp"
 
 #include <rosin/adapt/fft_pocketfft.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // String-samples (steps of the contact) per second on one core: travelling waves with more and more physics, and the modal
 // reference under the same stroke. Kernels are designed outside the clock; with the sensors' signals (simulate_wave_stroke)
 // and without (the bare loop).

@@ -3,7 +3,7 @@
 // Plucks first: what do they say of string, ends, wire and sensors? Then the strokes, reconstructed with that: tension and contact.
 //
 #include "diagnose_rig.hpp"
-#include "progress.hpp"
+#include "pluck_input.hpp"
 
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/diagnose/contact_effects.hpp>
@@ -27,72 +27,36 @@ struct diagnosed_stroke {
   double force_sd_N = 0, velocity_sd_m_s = 0, delta = 0;
 };
 
-
-
 using layout = rosin::pluck_layout;
 
 bool has(const std::vector<std::string>& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
 
-/// Every sound pluck; the rest is named.
-std::vector<std::pair<rosin::pluck_take, bool>> read_plucks(const rosin::rig& rig, provenance& from, rig_diagnosis& d) {
-  std::vector<std::pair<rosin::pluck_take, bool>> out;
-  for (const auto& take : rig.takes) {
-    if (take.kind != rosin::take_kind::pluck) continue;
-    const auto read = read_take(rig, take, from);
-    const auto position = rig.position_of(take);
-    if (!read) d.warnings.push_back(take.name + ": left out: " + read.error());
-    else if (!position || !take.force_N) d.warnings.push_back(take.name + ": left out: its position or force is unknown");
-    else if (rosin::has_error(read->check.findings)) {
-      for (const auto& f : read->check.findings)
-        if (f.level == rosin::severity::error) d.warnings.push_back(sentence(rig, f));
-      d.warnings.push_back(take.name + ": left out for the error above");
-    } else {
-      out.push_back({{take.name, read->signals.sample_rate_Hz, {read->signals.near_N(), read->signals.far_N()}, *take.force_N, rosin::force_tolerance_of(take), *position},
-                     take.hold_out});
-    }
-  }
-  for (std::size_t i = 1; i < out.size();)
-    if (out[i].first.rate_Hz != out[0].first.rate_Hz) {
-      d.warnings.push_back(out[i].first.name + ": left out: its sampling rate is not that of the first pluck");
-      out.erase(out.begin() + static_cast<std::ptrdiff_t>(i));
-    } else ++i;
-  return out;
-}
-
-/// The weaker of two, the last of several: a set of its own that nothing was fitted to.
-void set_aside(std::vector<std::pair<rosin::pluck_take, bool>>& plucks) {
-  if (plucks.size() < 2 || std::any_of(plucks.begin(), plucks.end(), [](const auto& p) { return p.second; })) return;
-  plucks.back().second = true;
-}
-
-
 rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d) {
-  auto plucks = read_plucks(rig, from, d);
-  if (plucks.empty()) return rosin::failure{rig.file + ": no pluck to compare with"};
-  set_aside(plucks);
-  std::vector<rosin::pluck_take> takes, held;
-  for (auto& [take, out] : plucks) (out ? held : takes).push_back(std::move(take));
+  rig_plucks plucks = read_plucks(rig, from);
+  d.warnings.insert(d.warnings.end(), plucks.warnings.begin(), plucks.warnings.end());
+  auto& [takes, held, warnings, incomplete] = plucks;
+  if (takes.empty() && held.empty()) return rosin::failure{rig.file + ": no pluck to compare with"};
   if (takes.empty()) return rosin::failure{rig.file + ": every pluck is marked hold_out: none is left to fit"};
+  if (held.empty() && takes.size() > 1) {  // the last of several: one that nothing is fitted to
+    held.push_back(std::move(takes.back()));
+    takes.pop_back();
+  }
 
   const std::vector<std::string> physics = rig.model ? rig.model->physics : std::vector<std::string>{};
   rosin::pluck_options options;
   options.stiffness = has(physics, "bending-stiffness");
   options.internal_loss = has(physics, "frequency-dependent-loss");
   options.air_loss = has(physics, "air-loss");
-  rosin::pluck_guess guess{values.fundamental_Hz.value, 0, values.quality, {rosin::gain_tolerance_of(*rig.channel("near")), rosin::gain_tolerance_of(*rig.channel("far"))},
-                           {rig.channel("near")->ac_coupled_Hz.value_or(0), rig.channel("far")->ac_coupled_Hz.value_or(0)}};
-  if (options.stiffness && values.bending_stiffness_Nm2 && values.tension_N && values.length_m)
-    guess.inharmonicity = std::pow(std::numbers::pi / values.length_m->value, 2) * values.bending_stiffness_Nm2->value / values.tension_N->value;
+  rosin::pluck_guess guess = guess_of(rig, values);
+  if (!options.stiffness) guess.inharmonicity = 0;
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;
-  progress bar{"plucks against the catalogue", 0};
-  return rosin::diagnose_plucks(takes, held, guess, options, [&](const rosin::pluck_fit_result& fit) {
-    const rosin::string_facts facts{fit.value[layout::fundamental], takes[0].rate_Hz, fit.limits.stop_Hz, impedance, length, takes.size()};
+  const double rate = takes.front().rate_Hz;
+  const std::size_t count = takes.size();
+  return rosin::diagnose_plucks(takes, held, guess, options, [=](const rosin::pluck_fit_result& fit) {
+    const rosin::string_facts facts{fit.value[layout::fundamental], rate, fit.limits.stop_Hz, impedance, length, count};
     return rosin::catalogue_without(physics, facts, fit.limits);
   });
 }
-
-
-
 
 /// The fit with all that was found, as a plain calibration of the string.
 rosin::calibration calibration_with(const rosin::pluck_diagnosis& p, double declared, const rosin::rig_values& values) {
@@ -112,7 +76,6 @@ rosin::calibration calibration_with(const rosin::pluck_diagnosis& p, double decl
   const double z = values.impedance_Ns_m->value;
   return rosin::calibration_from(fit, declared, z, values.impedance_Ns_m->sd / z);
 }
-
 
 std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, double tension_drift,
                                                   provenance& from, rig_diagnosis& d) {
@@ -237,9 +200,6 @@ missing_effect described(const rosin::contact_hypothesis& h, double probability)
   m.statement = statement_of(m);
   return m;
 }
-
-
-
 
 std::vector<std::string> bare(const std::vector<std::string>& ids) {
   std::vector<std::string> out;

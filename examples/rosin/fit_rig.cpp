@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fit_rig.hpp"
-#include "progress.hpp"
+#include "pluck_input.hpp"
 
 namespace tool {
 
@@ -9,69 +9,6 @@ namespace {
 using layout = rosin::pluck_layout;
 
 std::string figure(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
-
-std::optional<rosin::pluck_take> pluck_of(const rosin::rig& rig, const rosin::take& take, const checked_take& read,
-                                          std::vector<std::string>& warnings) {
-  const auto position = rig.position_of(take);
-  if (!position) {
-    warnings.push_back(take.name + ": left out: its position is unknown; give [contact].position or contact_position");
-    return std::nullopt;
-  }
-  if (!take.force_N) {
-    warnings.push_back(take.name + ": left out: the force of its release (force_N) is unknown");
-    return std::nullopt;
-  }
-  rosin::pluck_take out{take.name, read.signals.sample_rate_Hz, {read.signals.near_N(), read.signals.far_N()},
-                        *take.force_N, rosin::force_tolerance_of(take), *position};
-  return out;
-}
-
-/// Reads every pluck; those with an error are left out and named.
-void gather(const rosin::rig& rig, provenance& from, rig_calibration& out) {
-  std::size_t plucks = 0;
-  for (const auto& take : rig.takes) plucks += take.kind == rosin::take_kind::pluck ? 1 : 0;
-  progress bar{"reading plucks", plucks};
-  for (const auto& take : rig.takes) {
-    if (take.kind != rosin::take_kind::pluck) continue;
-    bar.step();
-    const auto read = read_take(rig, take, from);
-    if (!read) {
-      out.warnings.push_back(take.name + ": left out: " + read.error());
-      out.incomplete = true;
-      continue;
-    }
-    for (const auto& f : read->check.findings)
-      if (f.level != rosin::severity::note) out.warnings.push_back(sentence(rig, f));
-    if (rosin::has_error(read->check.findings)) {
-      out.warnings.push_back(take.name + ": left out for the error above");
-      out.incomplete = true;
-      continue;
-    }
-    auto pluck = pluck_of(rig, take, *read, out.warnings);
-    if (!pluck) out.incomplete = true;
-    else (take.hold_out ? out.held_out : out.takes).push_back(*std::move(pluck));
-  }
-}
-
-/// The fit works at one rate: that of the first pluck.
-void keep_one_rate(rig_calibration& out) {
-  if (out.takes.empty()) return;
-  const double rate = out.takes.front().rate_Hz;
-  std::erase_if(out.takes, [&](const rosin::pluck_take& t) {
-    if (t.rate_Hz == rate) return false;
-    out.warnings.push_back(t.name + ": left out: recorded at " + figure(t.rate_Hz, "%.0f") + " Hz, the first pluck at " +
-                           figure(rate, "%.0f") + " Hz");
-    return out.incomplete = true;
-  });
-}
-
-rosin::pluck_guess guess_of(const rosin::rig& rig, const rig_calibration& c) {
-  rosin::pluck_guess guess{c.values.fundamental_Hz.value, 0, c.values.quality, {}, c.ac_coupled_Hz};
-  if (c.values.bending_stiffness_Nm2 && c.values.tension_N && c.values.length_m)
-    guess.inharmonicity = std::pow(std::numbers::pi / c.values.length_m->value, 2) * c.values.bending_stiffness_Nm2->value / c.values.tension_N->value;
-  guess.gain_tolerance = {rosin::gain_tolerance_of(*rig.channel("near")), rosin::gain_tolerance_of(*rig.channel("far"))};
-  return guess;
-}
 
 void derive_units(const rosin::rig& rig, rig_calibration& c) {
   const auto& v = c.values;
@@ -163,14 +100,15 @@ rosin::outcome<rig_calibration> calibrate(const rosin::rig& rig, provenance& fro
   out.values = rosin::values_of(rig);
   out.assumed = out.values.assumed;
   out.ac_coupled_Hz = {rig.channel("near")->ac_coupled_Hz.value_or(0), rig.channel("far")->ac_coupled_Hz.value_or(0)};
-  gather(rig, from, out);
-  keep_one_rate(out);
+  rig_plucks plucks = read_plucks(rig, from);
+  out.takes = std::move(plucks.takes), out.held_out = std::move(plucks.held_out);
+  out.warnings = std::move(plucks.warnings), out.incomplete = plucks.incomplete;
   if (out.takes.empty()) {
     std::string why = rig.file + ": no pluck to calibrate from; record a pluck made by a breaking wire at the contact, or give a calibration";
     for (const auto& line : out.warnings) why += "\n" + line;
     return rosin::failure{why};
   }
-  auto fit = rosin::fit_plucks(out.takes, guess_of(rig, out));
+  auto fit = rosin::fit_plucks(out.takes, guess_of(rig, out.values));
   if (!fit) return rosin::failure{fit.error()};
   out.fit = *std::move(fit);
   derive_units(rig, out);

@@ -74,12 +74,16 @@
 #include <rosin/propagate/dispersion.hpp>
 #include <rosin/propagate/fir.hpp>
 #include <rosin/propagate/string_parameters.hpp>
+#include <rosin/propagate/termination.hpp>
 #include <rosin/propagate/transmission.hpp>
 
 #include <rosin/reconstruct/bow_point_transfer.hpp>
 #include <rosin/reconstruct/consistency.hpp>
 #include <rosin/reconstruct/dc_level.hpp>
+#include <rosin/reconstruct/end_motion.hpp>
 #include <rosin/reconstruct/fine_tune.hpp>
+#include <rosin/reconstruct/passage_design.hpp>
+#include <rosin/reconstruct/passage_reconstructor.hpp>
 #include <rosin/reconstruct/periodic_part.hpp>
 #include <rosin/reconstruct/periodic_reconstruction.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>

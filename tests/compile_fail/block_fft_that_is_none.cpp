@@ -1,4 +1,5 @@
 // expect: ComplexFft
+// SPDX-License-Identifier: MIT
 // A block transform wants an FFT of complex records or of lanes.
 #include <rosin/math/block_transform.hpp>
 

@@ -1,4 +1,5 @@
 // expect: FrictionCurve
+// SPDX-License-Identifier: MIT
 // The contact is solved by Newton's method: a curve gives its slope as well.
 #include <rosin/friction/elasto_plastic.hpp>
 

@@ -1,4 +1,5 @@
 // expect: FrictionLaw
+// SPDX-License-Identifier: MIT
 // A law without reset() cannot start a take anew.
 #include <rosin/simulate/modal_stroke.hpp>
 

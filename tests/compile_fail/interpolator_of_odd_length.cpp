@@ -1,4 +1,5 @@
 // expect: Interpolator
+// SPDX-License-Identifier: MIT
 // As many taps on either side: an odd number has no middle between two samples.
 #include <rosin/condition/fractional_delay.hpp>
 

@@ -1,4 +1,5 @@
 // expect: FirKernel
+// SPDX-License-Identifier: MIT
 // Taps alone do not say at which lag they begin.
 #include <rosin/condition/overlap_save_design.hpp>
 #include <rosin/propagate/fir.hpp>

@@ -1,4 +1,5 @@
 // expect: PassageKernel
+// SPDX-License-Identifier: MIT
 // A kernel policy leads to the end of the string and back.
 #include <rosin/reconstruct/bow_point_transfer.hpp>
 

@@ -1,4 +1,5 @@
 // expect: Feeds
+// SPDX-License-Identifier: MIT
 // A float stage cannot feed a double stage, wherever in the chain.
 #include <rosin/core/pipeline.hpp>
 

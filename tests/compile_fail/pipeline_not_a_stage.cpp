@@ -1,4 +1,5 @@
 // expect: Stage
+// SPDX-License-Identifier: MIT
 // Something that can be called is not yet a stage: it has no latency and no reset.
 #include <rosin/core/pipeline.hpp>
 

@@ -1,4 +1,5 @@
 // expect: RealFft
+// SPDX-License-Identifier: MIT
 // An FFT policy in double does not transform float records.
 #include <rosin/condition/low_pass.hpp>
 #include <rosin/propagate/band.hpp>

@@ -1,4 +1,5 @@
 // expect: ReflectionFunction
+// SPDX-License-Identifier: MIT
 // A reflection function depends on frequency, even where it is constant.
 #include <rosin/reconstruct/periodic_reconstruction.hpp>
 

@@ -1,4 +1,5 @@
 // expect: RodMotion
+// SPDX-License-Identifier: MIT
 // The speed alone does not say how the rod presses.
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/simulate/modal_stroke.hpp>

@@ -1,4 +1,5 @@
 // expect: Transfer
+// SPDX-License-Identifier: MIT
 // A response is one complex number, not magnitude and phase side by side.
 #include <rosin/propagate/fir.hpp>
 

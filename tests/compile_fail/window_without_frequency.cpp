@@ -1,4 +1,5 @@
 // expect: FrequencyWindow
+// SPDX-License-Identifier: MIT
 // A cut-off in Hz is not yet a window.
 #include <rosin/condition/low_pass.hpp>
 #include <rosin/propagate/band.hpp>

@@ -1,5 +1,8 @@
+// SPDX-License-Identifier: MIT
 // The travelling-wave string against its modes, with friction in the loop: the first twenty periods of strokes that are not
 // chaotic (in others two simulations of any kind part after some slips, the modal one from itself at another rate).
+#include "support/violin_e_string.hpp"
+
 #include <doctest/doctest.h>
 
 #include <rosin/friction/thermal_plastic.hpp>
@@ -10,12 +13,7 @@
 
 namespace {
 
-const rosin::modal_rig rig{.string = {.length_m = 0.314,
-                                      .tension_N = 72.5,
-                                      .fundamental_Hz = 660,
-                                      .bending_stiffness_Nm2 = 4.7e-5,
-                                      .loss = {.quality = 1000}},
-                           .torsion = {7, 3.5, 15}};
+const rosin::modal_rig& rig = test::violin_e_string;
 constexpr double twenty_periods_s = 20 / 660.0;
 
 /// Of Eq. (12): rms of the difference over rms of the signal without its mean.

@@ -107,10 +107,20 @@ public:
   }
   [[nodiscard]] double release_s(const Eigen::VectorXd& v, std::size_t take) const { return v[at(take, release)]; }
 
-  /// Ringing lines of 1 N, amplitudes at the release, as the channels record them from `begin_s` on: strength, gains and high-pass;
-  /// and a slow line for each channel.
-  void sense(std::vector<damped_line>& lines, const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
-             const std::array<double, 2>& ac_coupled_Hz) const;
+  /// Gain of a channel, recorded / true.
+  [[nodiscard]] static double gain(const Eigen::VectorXd& v, std::size_t channel) { return std::exp(v[gain_near + static_cast<int>(channel)]); }
+
+  /// What is slow in a channel from `begin_s` on: its offset, the held string before the release (`held`: recorded newtons), and what a
+  /// high-pass makes of both, H(s) = s / (s + w_c): the offset dies away, the step of the release leaves -held exp(-w_c t).
+  [[nodiscard]] damped_line slow_line(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s, std::size_t channel,
+                                      double corner_Hz, double held) const {
+    const double corner = 2 * std::numbers::pi * corner_Hz, offset = v[at(take, offset_near + static_cast<int>(channel))];
+    damped_line slow{-corner, {}};
+    slow.residue[channel] = offset * std::exp(-corner * begin_s);
+    if (corner == 0 && part == 0) slow.residue[channel] += held;
+    if (corner > 0 && part == 1) slow.residue[channel] -= held * std::exp(-corner * (begin_s - release_s(v, take)));
+    return slow;
+  }
 
   [[nodiscard]] ringing_string string(const Eigen::VectorXd& v) const {
     return {v[fundamental], v[inharmonicity], {1 / v[inverse_quality], v[internal_loss], v[air_loss]}, v[convention]};
@@ -170,28 +180,6 @@ private:
   std::vector<Eigen::Index> group_;
   std::vector<std::string> names_;
 };
-
-inline void pluck_layout::sense(std::vector<damped_line>& lines, const Eigen::VectorXd& v, std::size_t take, std::size_t part,
-                                double begin_s, const std::array<double, 2>& ac_coupled_Hz) const {
-  const double released = release_s(v, take), newtons = std::exp(v[at(take, strength)]);
-  const auto ringing = static_cast<std::ptrdiff_t>(lines.size());
-  for (std::size_t c = 0; c < 2; ++c) {
-    const double gain = newtons * std::exp(v[gain_near + static_cast<int>(c)]);
-    const double offset = v[at(take, offset_near + static_cast<int>(c))];
-    const double corner = 2 * std::numbers::pi * ac_coupled_Hz[c];
-    double at_release = 0;
-    for (auto line = lines.begin(); line != lines.begin() + ringing; ++line) {
-      const std::complex<double> sensed = gain * line->residue[c] * (corner > 0 ? line->pole / (line->pole + corner) : 1.0);
-      at_release += sensed.real();
-      line->residue[c] = sensed * std::exp(line->pole * (begin_s - released));
-    }
-    damped_line slow{-corner, {}};
-    if (part == 0) slow.residue[c] = offset * std::exp(-corner * begin_s) + (corner > 0 ? 0.0 : gain * static_forces(v[position(take)])[c]);
-    else if (corner == 0) slow.residue[c] = offset;
-    else slow.residue[c] = (offset * std::exp(-corner * released) - at_release) * std::exp(-corner * (begin_s - released));
-    lines.push_back(slow);
-  }
-}
 
 /// Inverse over the free parameters; rows and columns of the fixed ones are zero.
 template <class Layout>

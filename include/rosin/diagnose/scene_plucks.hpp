@@ -118,7 +118,11 @@ public:
     }
     for (damped_line& line : out)
       for (std::size_t c = 0; c < 2; ++c) line.residue[c] *= gain(v, c);
-    add_slow(out, s, v, take, part, begin_s);
+    const auto still = static_forces(position_now);
+    for (std::size_t c = 0; c < 2; ++c) {
+      const double held = newtons * gain(v, c) * (still[c] + s.crosstalk * still[1 - c]);
+      out.push_back(slow_line(v, take, part, begin_s, c, s.sensors[c].corner_Hz, held));
+    }
     for (const hum_phasor& h : s.hum) {
       damped_line line{{0, 2 * std::numbers::pi * h.frequency_Hz}, h.amplitude_N};
       for (auto& r : line.residue) r *= std::exp(line.pole * begin_s);
@@ -128,28 +132,11 @@ public:
   }
 
 private:
-  [[nodiscard]] static double gain(const Eigen::VectorXd& v, std::size_t c) { return std::exp(v[gain_near + static_cast<int>(c)]); }
-
   /// What the poles depend on.
   [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v) const {
     Eigen::VectorXd k(gain_near + v.size() - plain_size());
     k << v.head(gain_near), v.tail(v.size() - plain_size());
     return k;
-  }
-
-  /// Offsets, the held string before the release, and what a high-pass makes of both.
-  void add_slow(std::vector<damped_line>& out, const pluck_scene& s, const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s) const {
-    const double released = release_s(v, take), newtons = std::exp(v[at(take, strength)]);
-    const auto still = static_forces(v[position(take)]);
-    for (std::size_t c = 0; c < 2; ++c) {
-      const double corner = 2 * std::numbers::pi * s.sensors[c].corner_Hz, offset = v[at(take, offset_near + static_cast<int>(c))];
-      const double held = newtons * gain(v, c) * (still[c] + s.crosstalk * still[1 - c]);
-      damped_line slow{-corner, {}};
-      slow.residue[c] = offset * std::exp(-corner * begin_s);
-      if (corner == 0 && part == 0) slow.residue[c] += held;
-      if (corner > 0 && part == 1) slow.residue[c] -= held * std::exp(-corner * (begin_s - released));
-      out.push_back(slow);
-    }
   }
 
   std::array<double, 2> corner_Hz_;

@@ -12,8 +12,16 @@
 // field under the contact (specification sheet 1.4). Both are exact for the stiff string and checked against its modes in the
 // tests. All that the string has to be known by: two travel times, its dispersion and loss in time, and the impedance.
 //
-// Each of the three refinements, and the kernel, is chosen at compile time, so that the paper's own processing is one of the
-// choices: physics<false, false, false, airy_passage>.
+// An end that moves with the velocity V_j = Y_j F_j sends waves out as well: with the relative admittance z_j = Z Y_j
+//
+//     1 / D_j -> (1 + alpha z_j) / D_j,   D_j -> (1 + beta z_j) D_j,   alpha, beta = +-sqrt(1+K) / G + i q rho K / (w G),
+//
+// rho = k / kappa. Nothing is inverted: z_j F_j = Z V_j is a causal, decaying function of the measured force, and goes in as a third
+// and a fourth signal (moving_ends, in newtons), so that these kernels stay as short as they are. Exact for the stiff string
+// (sheet 6.0, line 1, with stiffness and near field of the end); without moving ends nothing of it is compiled.
+//
+// Each refinement, and the kernel, is chosen at compile time, so that the paper's own processing is one of the choices:
+// physics<false, false, false, airy_passage>.
 //
 #pragma once
 
@@ -64,20 +72,24 @@ private:
 };
 
 /// What the reconstruction takes into account.
-template <bool ForceFactor = true, bool NearField = true, bool Loss = true, PassageKernel Kernel = exact_passage>
+template <bool ForceFactor = true, bool NearField = true, bool Loss = true, PassageKernel Kernel = exact_passage, bool MovingEnds = false>
 struct physics {
-  static constexpr bool force_factor = ForceFactor, near_field = NearField, loss = Loss;
+  static constexpr bool force_factor = ForceFactor, near_field = NearField, loss = Loss, moving_ends = MovingEnds;
   using kernel = Kernel;
 };
+
+/// The same with terminations that move.
+template <class P>
+using with_moving_ends = physics<P::force_factor, P::near_field, P::loss, typename P::kernel, true>;
 
 using full_physics = physics<>;
 using paper_physics = physics<false, false, false, airy_passage<airy_form::transmission>>;
 
-/// The 4 x 2 transfer functions from {F_near, F_far} to {f_near, f_far, v_near, v_far}; row-major.
+/// Transfer functions from {F_near, F_far} and, where the ends move, {Z V_near, Z V_far} to {f_near, f_far, v_near, v_far}; row-major.
 template <class Physics>
 class bow_point_transfer {
 public:
-  static constexpr std::size_t outputs = 4, inputs = 2;
+  static constexpr std::size_t outputs = 4, inputs = Physics::moving_ends ? 4 : 2;
 
   bow_point_transfer(const bow_point& at, const band& limits, double rate_Hz)
       : at_{Physics::loss ? at : lossless(at)}, side_{typename Physics::kernel(at_, 0, limits, rate_Hz),
@@ -93,10 +105,26 @@ public:
         Physics::near_field ? complex(0, -near_field_ratio(w, epsilon) / (2 * Zw * force_factor(w, epsilon))) : complex(0);
     const complex nf1 = near_field * G * (back1 + out1) / 2.0, nf2 = near_field * G * (back2 + out2) / 2.0;
     const complex v1 = (back1 - out1) / (2 * Zw), v2 = (back2 - out2) / (2 * Zw);
-    return {G * back1, G * out2, G * out1, G * back2, v1 + nf1, nf2, nf1, v2 + nf2};
+    if constexpr (!Physics::moving_ends) {
+      return {G * back1, G * out2, G * out1, G * back2, v1 + nf1, nf2, nf1, v2 + nf2};
+    } else {
+      const auto [a, b] = moved(w, G);
+      const complex nw1 = near_field * G * (a * back1 + b * out1) / 2.0, nw2 = near_field * G * (a * back2 + b * out2) / 2.0;
+      const complex w1 = (a * back1 - b * out1) / (2 * Zw), w2 = (a * back2 - b * out2) / (2 * Zw);
+      return {G * back1, G * out2,  G * a * back1, G * b * out2,  G * out1, G * back2, G * b * out1, G * a * back2,
+              v1 + nf1,  nf2,       w1 + nw1,      nw2,           nf1,      v2 + nf2,  nw1,          w2 + nw2};
+    }
   }
 
 private:
+  /// alpha and beta of the header.
+  [[nodiscard]] std::array<std::complex<double>, 2> moved(double w, double G) const {
+    const double ratio = Physics::force_factor ? wave_impedance_ratio(w, at_.stiffness_s2) / G : 1.0;
+    if (!Physics::force_factor || w == 0) return {ratio, -ratio};
+    const double K = stiffness_ratio(w, at_.stiffness_s2);
+    const std::complex<double> bent(0, phase_rate(w, at_.stiffness_s2) * near_field_ratio(w, at_.stiffness_s2) * K / (w * G));
+    return {ratio + bent, -ratio + bent};
+  }
   static bow_point lossless(bow_point at) {
     at.loss = {};
     return at;

@@ -46,19 +46,31 @@ inline constexpr std::array<Eigen::Index, 3> tuned_parameters{0, 1, 5};
 }
 
 /// Recorded nominal newtons to newtons.
+template <std::size_t Inputs>
+[[nodiscard]] std::array<std::vector<double>, Inputs> calibrated(const calibration& c, const std::array<std::span<const double>, Inputs>& recorded) {
+  std::array<std::vector<double>, Inputs> out;
+  for (std::size_t i = 0; i < Inputs; ++i) {
+    out[i].assign(recorded[i].begin(), recorded[i].end());
+    for (double& x : out[i]) x /= c.gain[i % 2];
+  }
+  return out;
+}
 [[nodiscard]] inline std::array<std::vector<double>, 2> calibrated(const calibration& c, std::span<const double> near, std::span<const double> far) {
-  std::array<std::vector<double>, 2> out{std::vector<double>(near.begin(), near.end()), std::vector<double>(far.begin(), far.end())};
-  for (std::size_t channel = 0; channel < 2; ++channel)
-    for (double& x : out[channel]) x /= c.gain[channel];
+  return calibrated<2>(c, {near, far});
+}
+template <std::size_t Inputs>
+[[nodiscard]] std::array<std::span<const double>, Inputs> views_of(const std::array<std::vector<double>, Inputs>& signals) {
+  std::array<std::span<const double>, Inputs> out;
+  std::copy(signals.begin(), signals.end(), out.begin());
   return out;
 }
 
 }  // namespace detail
 
-/// Recorded forces in nominal newtons, gains not yet taken out.
+/// Recorded forces (and motion of the ends) in nominal newtons, gains not yet taken out.
 template <class Physics = full_physics>
-[[nodiscard]] fine_tuning fine_tune(const calibration& from, std::span<const double> near_N, std::span<const double> far_N,
-                                    const band& limits, double rate_Hz, const drift_allowance& allowed = {}) {
+[[nodiscard]] fine_tuning fine_tune(const calibration& from, const end_signals<double, Physics>& recorded, const band& limits, double rate_Hz,
+                                    const drift_allowance& allowed = {}) {
   fine_tuning out{from};
   const auto& which = detail::tuned_parameters;
   const Eigen::Matrix3d plucked = from.covariance(which, which), prior = plucked + detail::allowed_covariance(from, allowed);
@@ -66,14 +78,15 @@ template <class Physics = full_physics>
   Eigen::Matrix3d posterior = prior, from_data = prior;
 
   for (out.iterations = 0; out.iterations < 6; ++out.iterations) {
-    const auto force = detail::calibrated(out.tuned, near_N, far_N);
-    const bow_motion<double> motion = reconstructor<double, Physics>(out.tuned.at, limits, rate_Hz, 1e-4)(force[0], force[1]);
+    const auto force = detail::calibrated(out.tuned, recorded);
+    const auto in = detail::views_of(force);
+    const bow_motion<double> motion = reconstructor<double, Physics>(out.tuned.at, limits, rate_Hz, 1e-4)(in);
     const double delta = consistency_delta(motion.force_near_N, motion.force_far_N);
     if (out.iterations == 0) out.delta_before = delta;
     out.delta_after = delta;
     const auto begin = static_cast<Eigen::Index>(motion.known.begin), count = static_cast<Eigen::Index>(motion.known.end) - begin;
     if (count < 100) break;
-    const reconstruction_sensitivity s = sensitivity<Physics>(out.tuned, force[0], force[1], limits, rate_Hz);
+    const reconstruction_sensitivity s = sensitivity<Physics>(out.tuned, in, limits, rate_Hz);
     Eigen::MatrixXd S = s.difference(Eigen::seqN(begin, count), which);
     Eigen::VectorXd e = Eigen::VectorXd::Map(motion.force_near_N.data() + begin, count) -
                         Eigen::VectorXd::Map(motion.force_far_N.data() + begin, count);
@@ -94,6 +107,12 @@ template <class Physics = full_physics>
   out.tuned.covariance(which, which) = posterior;
   out.sigmas = std::sqrt(std::max(0.0, moved.dot((plucked + from_data).inverse() * moved)));
   return out;
+}
+
+template <class Physics = full_physics>
+[[nodiscard]] fine_tuning fine_tune(const calibration& from, std::span<const double> near_N, std::span<const double> far_N,
+                                    const band& limits, double rate_Hz, const drift_allowance& allowed = {}) {
+  return fine_tune<Physics>(from, end_signals<double, Physics>{near_N, far_N}, limits, rate_Hz, allowed);
 }
 
 }  // namespace rosin

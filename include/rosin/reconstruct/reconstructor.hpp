@@ -3,7 +3,7 @@
 //
 // Time-domain reconstruction of a whole take, transient included: the transfer functions of bow_point_transfer.hpp as FIR kernels
 // within a band, run over the record by overlap-save. Nothing periodic is assumed. A sample whose kernel would reach beyond
-// the record is unknown (not a number), never made up.
+// the record is unknown (not a number), never made up. Where the ends move, their velocities (end_motion.hpp) come in beside the forces.
 //
 #pragma once
 
@@ -28,10 +28,14 @@ struct bow_motion {
   [[nodiscard]] T velocity_m_s(std::size_t i) const { return (velocity_near_m_s[i] + velocity_far_m_s[i]) / 2; }
 };
 
+/// What goes in: {F_near, F_far}; where the ends move {F_near, F_far, Z V_near, Z V_far}. Newtons, equally long.
+template <class T, class Physics>
+using end_signals = std::array<std::span<const T>, bow_point_transfer<Physics>::inputs>;
+
 /// Largest relative error of the FIR kernels inside the pass band.
 inline constexpr double kernel_error = 1e-6;
 
-/// Kernels for the 4 x 2 transfer functions of a bow point; row-major.
+/// Kernels for the transfer functions of a bow point; row-major.
 template <class Physics>
 [[nodiscard]] std::vector<fir> bow_point_kernels(const bow_point& at, const band& limits, double rate_Hz, double error = kernel_error) {
   const bow_point_transfer<Physics> transfer(at, limits, rate_Hz);
@@ -49,11 +53,18 @@ class reconstructor {
 public:
   /// Preconditions: delays > 0, impedance > 0, limits.stop_Hz <= rate_Hz / 2.
   reconstructor(const bow_point& at, const band& limits, double rate_Hz, double error = kernel_error)
-      : convolver_(2, bow_point_kernels<Physics>(at, limits, rate_Hz, error)) {}
+      : convolver_(bow_point_transfer<Physics>::inputs, bow_point_kernels<Physics>(at, limits, rate_Hz, error)) {}
 
-  /// Forces on the terminations in newtons, equally long.
-  [[nodiscard]] bow_motion<T> operator()(std::span<const T> near_N, std::span<const T> far_N) {
-    const std::size_t n = std::min(near_N.size(), far_N.size());
+  /// Forces on rigid terminations in newtons, equally long.
+  [[nodiscard]] bow_motion<T> operator()(std::span<const T> near_N, std::span<const T> far_N)
+    requires(!Physics::moving_ends)
+  {
+    return (*this)(end_signals<T, Physics>{near_N, far_N});
+  }
+  [[nodiscard]] bow_motion<T> operator()(end_signals<T, Physics> in) {
+    std::size_t n = in[0].size();
+    for (const auto& x : in) n = std::min(n, x.size());
+    for (auto& x : in) x = x.first(n);
     bow_motion<T> out;
     out.known = convolver_.valid(n);
     std::array<std::vector<T>*, 4> rows{&out.force_near_N, &out.force_far_N, &out.velocity_near_m_s, &out.velocity_far_m_s};
@@ -62,8 +73,7 @@ public:
       rows[p]->resize(n);
       views[p] = *rows[p];
     }
-    const std::array<std::span<const T>, 2> inputs{near_N.first(n), far_N.first(n)};
-    convolver_.process(inputs, views);
+    convolver_.process(in, views);
     for (std::vector<T>* row : rows) {
       std::fill(row->begin(), row->begin() + static_cast<std::ptrdiff_t>(out.known.begin), std::numeric_limits<T>::quiet_NaN());
       std::fill(row->begin() + static_cast<std::ptrdiff_t>(out.known.end), row->end(), std::numeric_limits<T>::quiet_NaN());

@@ -14,9 +14,9 @@
 
 namespace rosin {
 
-/// Columns: one waveform parameter each. Rows: samples of the take.
+/// Columns: one waveform parameter each, then what else is uncertain (end_sensitivity.hpp). Rows: samples of the take.
 struct reconstruction_sensitivity {
-  Eigen::Matrix<double, Eigen::Dynamic, waveform_parameters> force, difference, velocity;
+  Eigen::MatrixXd force, difference, velocity;
 };
 
 namespace detail {
@@ -29,14 +29,15 @@ namespace detail {
   return step;
 }
 
-/// force, difference, velocity from the four outputs of the transfer: for one input column.
-[[nodiscard]] inline std::array<std::complex<double>, 3> combine(const std::array<std::complex<double>, 8>& h, std::size_t input) {
-  return {(h[input] + h[2 + input]) / 2.0, h[input] - h[2 + input], (h[4 + input] + h[6 + input]) / 2.0};
+/// force, difference, velocity from the four outputs of the transfer: for one input column of `Inputs`.
+template <std::size_t Size, std::size_t Inputs = Size / 4>
+[[nodiscard]] std::array<std::complex<double>, 3> combine(const std::array<std::complex<double>, Size>& h, std::size_t input) {
+  return {(h[input] + h[Inputs + input]) / 2.0, h[input] - h[Inputs + input], (h[2 * Inputs + input] + h[3 * Inputs + input]) / 2.0};
 }
 
 }  // namespace detail
 
-/// Kernels of the derivatives: rows (parameter, quantity), columns near and far.
+/// Kernels of the derivatives: rows (parameter, quantity), columns as in end_signals: near and far.
 template <class Physics>
 [[nodiscard]] std::vector<fir> sensitivity_kernels(const calibration& c, const band& limits, double rate_Hz) {
   const waveform_vector step = detail::derivative_steps(c);
@@ -48,10 +49,10 @@ template <class Physics>
     by[p] = step[p];
     const bow_point_transfer<Physics> above(c.moved(by).at, limits, rate_Hz), below(c.moved(-by).at, limits, rate_Hz);
     for (std::size_t quantity = 0; quantity < 3; ++quantity)
-      for (std::size_t input = 0; input < 2; ++input)
+      for (std::size_t input = 0; input < above.inputs; ++input)
         kernels.push_back(sample_response(
             [&](double f) -> std::complex<double> {
-              if (is_gain) return detail::combine(above(f), input)[quantity] * (input == 0 ? -0.5 : 0.5);
+              if (is_gain) return detail::combine(above(f), input)[quantity] * (input % 2 == 0 ? -0.5 : 0.5);
               return (detail::combine(above(f), input)[quantity] - detail::combine(below(f), input)[quantity]) / (2 * step[p]);
             },
             limits, rate_Hz, -lags.last, lags.last));
@@ -61,18 +62,22 @@ template <class Physics>
 
 /// Sensitivities over a take of calibrated forces (newtons), equally long. Samples near the ends count what lies beyond as zero.
 template <class Physics = full_physics>
-[[nodiscard]] reconstruction_sensitivity sensitivity(const calibration& c, std::span<const double> near_N,
-                                                     std::span<const double> far_N, const band& limits, double rate_Hz) {
-  const auto n = static_cast<Eigen::Index>(near_N.size());
-  block_convolver<double> convolver(2, sensitivity_kernels<Physics>(c, limits, rate_Hz));
+[[nodiscard]] reconstruction_sensitivity sensitivity(const calibration& c, const end_signals<double, Physics>& in, const band& limits,
+                                                     double rate_Hz) {
+  const std::size_t n = in[0].size();
+  block_convolver<double> convolver(in.size(), sensitivity_kernels<Physics>(c, limits, rate_Hz));
   reconstruction_sensitivity out;
-  for (auto* part : {&out.force, &out.difference, &out.velocity}) part->resize(n, waveform_parameters);
+  for (auto* part : {&out.force, &out.difference, &out.velocity}) part->resize(static_cast<Eigen::Index>(n), waveform_parameters);
   std::vector<std::span<double>> rows;
   for (int p = 0; p < waveform_parameters; ++p)
-    for (auto* part : {&out.force, &out.difference, &out.velocity}) rows.emplace_back(part->col(p).data(), near_N.size());
-  const std::array<std::span<const double>, 2> inputs{near_N, far_N};
-  convolver.process(inputs, rows);
+    for (auto* part : {&out.force, &out.difference, &out.velocity}) rows.emplace_back(part->col(p).data(), n);
+  convolver.process(in, rows);
   return out;
+}
+template <class Physics = full_physics>
+[[nodiscard]] reconstruction_sensitivity sensitivity(const calibration& c, std::span<const double> near_N,
+                                                     std::span<const double> far_N, const band& limits, double rate_Hz) {
+  return sensitivity<Physics>(c, end_signals<double, Physics>{near_N, far_N}, limits, rate_Hz);
 }
 
 }  // namespace rosin

@@ -31,14 +31,15 @@ namespace detail {
 
 /// Taps of a weighted sum of the four outputs' kernels from one input.
 [[nodiscard]] inline Eigen::VectorXd combined_taps(const std::vector<fir>& kernels, const std::array<double, 4>& weight, std::size_t input) {
+  const std::size_t inputs = kernels.size() / 4;
   int first = 0, last = 0;
   for (std::size_t p = 0; p < 4; ++p) {
-    first = std::min(first, kernels[2 * p + input].first);
-    last = std::max(last, kernels[2 * p + input].last());
+    first = std::min(first, kernels[inputs * p + input].first);
+    last = std::max(last, kernels[inputs * p + input].last());
   }
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(last - first + 1);
   for (std::size_t p = 0; p < 4; ++p) {
-    const fir& k = kernels[2 * p + input];
+    const fir& k = kernels[inputs * p + input];
     const auto count = static_cast<Eigen::Index>(k.taps.size());
     sum.segment(k.first - first, count) += weight[p] * Eigen::VectorXd::Map(k.taps.data(), count);
   }
@@ -65,11 +66,13 @@ namespace detail {
 
 }  // namespace detail
 
-/// `noise_N`: of the calibrated channels. `motion` is what the reconstructor made of the same take.
+/// `noise_N`: of the calibrated channels. `motion` is what the reconstructor made of the same take. `covariance`: of the columns of
+/// `s`; empty: the calibration's.
 template <class Physics = full_physics>
 [[nodiscard]] reconstruction_uncertainty uncertainty(const calibration& c, const bow_motion<double>& motion,
                                                      const reconstruction_sensitivity& s, const std::array<double, 2>& noise_N,
-                                                     const band& limits, double rate_Hz) {
+                                                     const band& limits, double rate_Hz, const Eigen::MatrixXd& covariance = {}) {
+  const Eigen::MatrixXd C = covariance.size() > 0 ? covariance : Eigen::MatrixXd(c.covariance);
   const std::vector<fir> kernels = bow_point_kernels<Physics>(c.at, limits, rate_Hz, 1e-4);
   reconstruction_uncertainty out;
   out.force_noise_N = detail::noise_through(kernels, {0.5, 0.5, 0, 0}, noise_N);
@@ -77,12 +80,12 @@ template <class Physics = full_physics>
   out.force_scale = c.scale_relative_sd;
   out.velocity_scale = std::hypot(c.scale_relative_sd, c.impedance_relative_sd);
 
-  const Eigen::VectorXd of_force = (s.force * c.covariance).cwiseProduct(s.force).rowwise().sum();
-  const Eigen::VectorXd of_velocity = (s.velocity * c.covariance).cwiseProduct(s.velocity).rowwise().sum();
+  const Eigen::VectorXd of_force = (s.force * C).cwiseProduct(s.force).rowwise().sum();
+  const Eigen::VectorXd of_velocity = (s.velocity * C).cwiseProduct(s.velocity).rowwise().sum();
   const auto known = [&](const Eigen::VectorXd& v) {
     return v.segment(static_cast<Eigen::Index>(motion.known.begin), static_cast<Eigen::Index>(motion.known.end - motion.known.begin)).mean();
   };
-  const Eigen::VectorXd of_difference = (s.difference * c.covariance).cwiseProduct(s.difference).rowwise().sum();
+  const Eigen::VectorXd of_difference = (s.difference * C).cwiseProduct(s.difference).rowwise().sum();
   const double seen = detail::rms_of(motion.force_near_N, -1, motion.force_far_N, motion.known);
   const double noise = detail::noise_through(kernels, {1, -1, 0, 0}, noise_N);
   if (motion.known.end > motion.known.begin) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/checks.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/effect_names.hpp>
 
 #include <doctest/doctest.h>

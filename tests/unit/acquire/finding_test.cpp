@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/finding.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/hum.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/pluck_checks.hpp>
 
 #include <doctest/doctest.h>

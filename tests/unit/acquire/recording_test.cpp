@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/recording.hpp>
 
 #include <doctest/doctest.h>

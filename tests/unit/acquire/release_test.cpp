@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/release.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/ringing.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/sample_runs.hpp>
 
 #include <doctest/doctest.h>

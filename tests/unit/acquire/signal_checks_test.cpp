@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/signal_checks.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/acquire/spectrum_line.hpp>
 
 #include <doctest/doctest.h>

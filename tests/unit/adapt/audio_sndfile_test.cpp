@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/adapt/audio_sndfile.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/adapt/fft_fftw.hpp>
 
 #include <rosin/math/fft.hpp>

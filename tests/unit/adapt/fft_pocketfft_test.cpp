@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/adapt/fft_pocketfft.hpp>
 
 #include <rosin/math/fft.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/adapt/mat_matio.hpp>
 
 #include <doctest/doctest.h>

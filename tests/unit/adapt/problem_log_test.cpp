@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/adapt/problem_log.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/adapt/riff_layout.hpp>
 
 #include <doctest/doctest.h>

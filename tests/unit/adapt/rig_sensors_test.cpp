@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/adapt/rig_sensors.hpp>
 
 #include <doctest/doctest.h>

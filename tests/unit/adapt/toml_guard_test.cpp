@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/adapt/toml_guard.hpp>
 
 #include <doctest/doctest.h>

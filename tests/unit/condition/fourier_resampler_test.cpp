@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/condition/fourier_resampler.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/condition/fourier_shift.hpp>
 
 #include <doctest/doctest.h>

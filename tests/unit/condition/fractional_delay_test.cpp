@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/condition/fractional_delay.hpp>
 
 #include <rosin/condition/fractional_delay_design.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/condition/low_pass.hpp>
 
 #include <rosin/propagate/band.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/condition/overlap_save_design.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/condition/overlap_save.hpp>
 
 #include <rosin/math/fft.hpp>

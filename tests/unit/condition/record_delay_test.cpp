@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/condition/record_delay.hpp>
 
 #include <doctest/doctest.h>

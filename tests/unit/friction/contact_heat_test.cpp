@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/contact_heat.hpp>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/creep.hpp>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/elasto_plastic.hpp>
 
 #include <algorithm>

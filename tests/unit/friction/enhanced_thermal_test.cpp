@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/enhanced_thermal.hpp>
 
 #include <algorithm>

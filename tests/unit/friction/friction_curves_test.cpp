@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/friction_curves.hpp>
 
 #include <cmath>

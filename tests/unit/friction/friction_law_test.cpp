@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/friction_law.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/thermal_plastic.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/velocity_curve.hpp>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/yield_curve_design.hpp>
 
 #include <cmath>

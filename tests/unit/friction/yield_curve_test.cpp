@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/friction/yield_curve.hpp>
 
 #include <doctest/doctest.h>

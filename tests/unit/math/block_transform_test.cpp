@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/math/block_transform.hpp>
 
 #include <rosin/math/fft.hpp>

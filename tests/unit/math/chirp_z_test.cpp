@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/math/chirp_z.hpp>
 
 #include <rosin/math/fft.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/math/fft_policy.hpp>
 
 #include <rosin/math/fft.hpp>

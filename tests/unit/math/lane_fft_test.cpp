@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/math/lane_fft.hpp>
 
 #include <rosin/math/fft.hpp>

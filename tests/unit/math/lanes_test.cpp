@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/math/lanes.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/propagate/band.hpp>
 
 #include <doctest/doctest.h>

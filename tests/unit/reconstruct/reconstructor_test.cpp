@@ -3,7 +3,10 @@
 
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/reconstruct/consistency.hpp>
+#include <rosin/reconstruct/end_motion.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
+
+#include "support/moving_end_rig.hpp"
 
 #include <doctest/doctest.h>
 
@@ -82,4 +85,24 @@ TEST_CASE("float is float-precise") {
   rosin::reconstructor<float> in_float(rosin::contact_at(string, position), limits, bowed().sample_rate_Hz);
   const std::vector<float> near(bowed().force_near_N.begin(), bowed().force_near_N.end()), far(bowed().force_far_N.begin(), bowed().force_far_N.end());
   CHECK(rosin::consistency_delta(mean_force(in_float(near, far)), mean_force(in_double(bowed().force_near_N, bowed().force_far_N))) < 1e-5);
+}
+
+TEST_CASE("ends that move as declared cost nothing; taken for rigid they do") {
+  const double fs = bowed().sample_rate_Hz, Z = string.impedance_Ns_m();
+  const test::moving_end_rig rig{string, {std::vector<test::end_mode>{{900, 40, 2e-3}, {3000, 15, 8e-3}}, std::vector<test::end_mode>{{2000, 20, 5e-3}}}};
+  const auto take = test::bow_moving_ends(rig, position, rosin::velocity_curve{rosin::two_exponential_curve<>{}}, {.speed_m_s = 0.2, .normal_force_N = 0.3}, 0.06,
+                                          {.mode_limit_Hz = 60e3, .oversampling = 2});
+  std::array<rosin::modal_termination, 2> ends;
+  for (std::size_t e = 0; e < 2; ++e)
+    for (const test::end_mode& m : rig.ends[e]) ends[e].modes.push_back({m.frequency_Hz, m.q, Z / m.mass_kg});
+  const auto near = rosin::motion_of_end(ends[0], take.near_N, limits, fs), far = rosin::motion_of_end(ends[1], take.far_N, limits, fs);
+  rosin::reconstructor<double> rigid(rosin::contact_at(string, position), limits, fs);
+  rosin::reconstructor<double, rosin::with_moving_ends<rosin::full_physics>> moving(rosin::contact_at(string, position), limits, fs);
+  const auto as_rigid = rigid(take.near_N, take.far_N);
+  const auto as_declared = moving({take.near_N, take.far_N, near.times_impedance_N, far.times_impedance_N});
+  CHECK(rosin::consistency_delta(mean_force(as_declared), through_band(take.force_N)) < 0.001);
+  CHECK(rosin::consistency_delta(as_declared.velocity_far_m_s, through_band(take.velocity_m_s)) < 0.003);
+  CHECK(rosin::consistency_delta(as_declared.force_near_N, as_declared.force_far_N) < 0.001);
+  CHECK(rosin::consistency_delta(mean_force(as_rigid), through_band(take.force_N)) > 0.005);
+  CHECK(rosin::consistency_delta(as_rigid.force_near_N, as_rigid.force_far_N) > 0.01);
 }

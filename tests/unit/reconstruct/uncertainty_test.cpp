@@ -51,7 +51,7 @@ TEST_CASE("what the convention of damping leaves open is counted, although both 
   motion.force_far_N = motion.force_near_N;
   motion.velocity_far_m_s = motion.velocity_near_m_s;
   rosin::reconstruction_sensitivity s;
-  for (auto* part : {&s.force, &s.velocity, &s.difference}) part->setZero(n, Eigen::NoChange);
+  for (auto* part : {&s.force, &s.velocity, &s.difference}) part->setZero(n, rosin::waveform_parameters);
   const auto sure = rosin::uncertainty(c, motion, s, {0, 0}, {20e3, 45e3}, 128e3);
   CHECK(sure.force_model_N == doctest::Approx(0.2 / std::numbers::sqrt2 / (2 * 500)).epsilon(1e-6));
   CHECK(sure.velocity_model_m_s == doctest::Approx(0.4 / std::numbers::sqrt2 / (2 * 500)).epsilon(1e-6));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/report/csv.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/report/npy.hpp>
 
 #include <doctest/doctest.h>

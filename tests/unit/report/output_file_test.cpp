@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/report/output_file.hpp>
 
 #include <doctest/doctest.h>

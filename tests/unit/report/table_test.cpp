@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/report/table.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/converter.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/modal_contact.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/modal_pluck.hpp>
 
 #include <doctest/doctest.h>

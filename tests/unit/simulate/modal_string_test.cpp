@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/modal_string.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/modal_stroke.hpp>
 
 #include <doctest/doctest.h>

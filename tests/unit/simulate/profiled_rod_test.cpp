@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/profiled_rod.hpp>
 
 #include <doctest/doctest.h>

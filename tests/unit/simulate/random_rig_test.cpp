@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/random_rig.hpp>
 
 #include <doctest/doctest.h>

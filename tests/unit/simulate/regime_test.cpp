@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/regime.hpp>
 
 #include <doctest/doctest.h>

@@ -1,4 +1,7 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/wave_design.hpp>
+
+#include "support/violin_e_string.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,12 +9,7 @@
 
 namespace {
 
-const rosin::modal_rig rig{.string = {.length_m = 0.314,
-                                      .tension_N = 72.5,
-                                      .fundamental_Hz = 660,
-                                      .bending_stiffness_Nm2 = 4.7e-5,
-                                      .loss = {.quality = 1000}},
-                           .torsion = {7, 3.5, 15}};
+const rosin::modal_rig& rig = test::violin_e_string;
 
 }  // namespace
 

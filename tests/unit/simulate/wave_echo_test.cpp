@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/wave_echo.hpp>
 
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <rosin/simulate/wave_settings.hpp>
 
 #include <doctest/doctest.h>

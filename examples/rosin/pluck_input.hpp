@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+//
+// The plucks of a rig with force transducers at both ends, as a fit takes them, and what is known before it.
+//
+#pragma once
+
+#include "rig_input.hpp"
+
+#include <rosin/calibrate/pluck_layout.hpp>
+
+namespace tool {
+
+struct rig_plucks {
+  std::vector<rosin::pluck_take> takes, held_out;
+  std::vector<std::string> warnings;
+  bool incomplete = false;  ///< some had to be left out
+};
+
+/// Reads every pluck; those with an error are left out and named. All that are to be fitted have one rate: that of the first.
+[[nodiscard]] rig_plucks read_plucks(const rosin::rig& rig, provenance& from);
+
+/// Nominal values; of the rig's declared inharmonicity only where it is known.
+[[nodiscard]] rosin::pluck_guess guess_of(const rosin::rig& rig, const rosin::rig_values& values);
+
+}  // namespace tool
