@@ -8,6 +8,7 @@
 //   the rig,    delays,      plucks:      the string from its ends   laws of     strings     tables,
 //   checks of   resampling,  gains,       to the bow: force and      the bow's   in motion   files
 //   recordings  long FIRs    delays, B,Q  velocity there             grip
+//   hardware: where the frames come from and go to (digitisers, takes on the disk), and what moves the bow
 //   ───────────────── core (stage, pipeline, outcome) · math (FFT, chirp-z, least squares) ─────────────────
 //
 #pragma once
@@ -155,6 +156,25 @@
 #include <rosin/diagnose/string_poles.hpp>
 #include <rosin/diagnose/string_response.hpp>
 #include <rosin/diagnose/tension_drift.hpp>
+
+#include <rosin/hardware/byte_link.hpp>
+#include <rosin/hardware/capture.hpp>
+#include <rosin/hardware/cobs.hpp>
+#include <rosin/hardware/crc32.hpp>
+#include <rosin/hardware/frame_packet.hpp>
+#include <rosin/hardware/frame_ring.hpp>
+#include <rosin/hardware/frames.hpp>
+#include <rosin/hardware/grbl_protocol.hpp>
+#include <rosin/hardware/grbl_simulator.hpp>
+#include <rosin/hardware/grbl_stage.hpp>
+#include <rosin/hardware/level_meter.hpp>
+#include <rosin/hardware/level_trigger.hpp>
+#include <rosin/hardware/paced_source.hpp>
+#include <rosin/hardware/packet_decoder.hpp>
+#include <rosin/hardware/pseudo_terminal.hpp>
+#include <rosin/hardware/serial_source.hpp>
+#include <rosin/hardware/take_file.hpp>
+#include <rosin/hardware/wav_header.hpp>
 
 #include <rosin/report/csv.hpp>
 #include <rosin/report/npy.hpp>

@@ -4,7 +4,7 @@ cmake_minimum_required(VERSION 3.25)  # a -P script starts with no policies set
 set(core_may_include "")
 set(math_may_include core)
 set(common core math)
-foreach(folder IN ITEMS acquire condition friction propagate report)
+foreach(folder IN ITEMS acquire condition friction hardware propagate report)
   set(${folder}_may_include ${common})
 endforeach()
 foreach(folder IN ITEMS torsion simulate)
@@ -15,7 +15,7 @@ set(reconstruct_may_include ${calibrate_may_include} calibrate)
 # What sets everything against everything.
 set(diagnose_may_include ${reconstruct_may_include} reconstruct torsion simulate)
 # An adapter joins the library and one third-party package; nothing includes an adapter.
-set(adapt_may_include ${common} acquire condition friction propagate report calibrate reconstruct torsion simulate diagnose)
+set(adapt_may_include ${common} acquire condition friction hardware propagate report calibrate reconstruct torsion simulate diagnose)
 
 # What a freestanding header must not include: whatever allocates, throws or talks to an operating system.
 set(hosted_only "boost/.*|Eigen/(Dense|Sparse.*|LU|QR|SVD|Eigenvalues|Cholesky)|unsupported/.*|vector|string|map|set|deque|list")

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/adapt/frames_sndfile.hpp>
+
+#include <doctest/doctest.h>
+
+#include <support/temporary_folder.hpp>
+
+#include <fcntl.h>
+#include <thread>
+#include <unistd.h>
+
+namespace {
+
+std::string make(const test::temporary_folder& folder, const char* name, int format, int frames) {
+  SF_INFO info{};
+  info.samplerate = 96000;
+  info.channels = 3;
+  info.format = format;
+  const rosin::detail::sndfile_handle file{sf_open((folder / name).c_str(), SFM_WRITE, &info)};
+  REQUIRE(file);
+  for (int i = 0; i < frames; ++i) {
+    const std::array<int, 3> frame{i << 16, -(i << 16), 12345 << 16};
+    REQUIRE(sf_writef_int(file.get(), frame.data(), 1) == 1);
+  }
+  return folder / name;
+}
+
+/// All frames of make(), each as it was written.
+template <class Source>
+std::size_t count_right(Source& from, std::string* problem = nullptr) {
+  std::vector<double> block(3 * 700);
+  std::size_t at = 0;
+  for (bool over = false; !over;) {
+    const auto got = from.read(block, std::chrono::seconds{2});
+    for (std::size_t i = 0; i < got.frames; ++i, ++at)
+      if (block[3 * i] * 32768 != static_cast<double>(at) || block[3 * i + 1] != -block[3 * i] || block[3 * i + 2] * 32768 != 12345) return 0;
+    over = got.ended;
+    if (problem != nullptr) *problem += got.problem;
+  }
+  return at;
+}
+
+}  // namespace
+
+TEST_CASE("WAV, RF64 and FLAC files, frame by frame") {
+  const test::temporary_folder folder;
+  for (const int format : {SF_FORMAT_WAV | SF_FORMAT_PCM_16, SF_FORMAT_WAVEX | SF_FORMAT_PCM_24, SF_FORMAT_RF64 | SF_FORMAT_PCM_32, SF_FORMAT_FLAC | SF_FORMAT_PCM_24}) {
+    CAPTURE(format);
+    auto from = rosin::sndfile_source::open(make(folder, "a", format, 5003));
+    REQUIRE(from.has_value());
+    CHECK(from->format().sample_rate_Hz == 96000);
+    CHECK(from->format().channels == 3);
+    CHECK_FALSE(from->format().live);
+    std::string problem;
+    CHECK(count_right(*from, &problem) == 5003);
+    CHECK(problem.empty());
+  }
+  CHECK(rosin::sndfile_source::open(folder / "none").error().find("no such file") != std::string::npos);
+}
+
+TEST_CASE("a WAV file through a pipe, in dribs and drabs, and bare samples") {
+  const test::temporary_folder folder;
+  make(folder, "a", SF_FORMAT_WAV | SF_FORMAT_PCM_16, 5003);
+  make(folder, "b", SF_FORMAT_RAW | SF_ENDIAN_LITTLE | SF_FORMAT_PCM_24, 5003);
+  for (const char* name : {"a", "b"}) {
+    CAPTURE(name);
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe(ends.data()) == 0);
+    const std::string bytes = folder.read(name);
+    std::jthread writer{[&] {
+      for (std::size_t at = 0; at < bytes.size();) {
+        const ssize_t done = ::write(ends[1], bytes.data() + at, std::min<std::size_t>(3001, bytes.size() - at));
+        if (done < 0) break;
+        at += static_cast<std::size_t>(done);
+      }
+      ::close(ends[1]);
+    }};
+    const std::optional<rosin::frame_format> bare = name[0] == 'b' ? std::optional{rosin::frame_format{96000, 3, 24}} : std::nullopt;
+    auto from = rosin::sndfile_source::open_pipe(ends[0], bare);
+    REQUIRE(from.has_value());
+    CHECK(from->format().bits == (bare ? 24 : 16));
+    CHECK(count_right(*from) == 5003);
+    writer.join();
+    ::close(ends[0]);
+  }
+}
+
+TEST_CASE("a file that is damaged inside ends with a reason") {
+  const test::temporary_folder folder;
+  make(folder, "a.flac", SF_FORMAT_FLAC | SF_FORMAT_PCM_16, 50000);
+  std::string bytes = folder.read("a.flac");
+  bytes.resize(bytes.size() / 2);
+  folder.write("a.flac", bytes);
+  auto from = rosin::sndfile_source::open(folder / "a.flac");
+  REQUIRE(from.has_value());
+  std::string problem;
+  CHECK(count_right(*from, &problem) < 50000);
+  CHECK_FALSE(problem.empty());
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/hardware/grbl_simulator.hpp>
+
+#include <doctest/doctest.h>
+
+TEST_CASE("a stroke is the trapezoid that was asked for") {
+  rosin::grbl_simulator sled;
+  CHECK(sled.receive("$120=1000\n", 0) == "ok\r\n");
+  CHECK(sled.receive("G21G91G1X-100F12000\n", 0) == "ok\r\n");  // 0.2 m/s: 0.2 s and 20 mm up, 60 mm in 0.3 s, 0.2 s down
+  CHECK(sled.advance(0.1).empty());
+  CHECK(sled.speed_m_s() == doctest::Approx(0.1).epsilon(0.01));
+  CHECK(sled.position_m() == doctest::Approx(-0.005).epsilon(0.01));
+  CHECK(sled.advance(0.3).empty());
+  CHECK(sled.speed_m_s() == doctest::Approx(0.2));
+  CHECK(sled.position_m() == doctest::Approx(-0.04).epsilon(0.01));
+  CHECK(sled.receive("?", 0.3).starts_with("<Run|MPos:-40.0"));
+  CHECK(sled.advance(0.68).empty());
+  CHECK(sled.moving());
+  CHECK(sled.advance(0.72).empty());
+  CHECK_FALSE(sled.moving());
+  CHECK(sled.receive("?", 0.72) == "<Idle|MPos:-100.000,0.000,0.000|FS:0,0>\r\n");
+}
+
+TEST_CASE("feed hold, going on, reset while moving, limits") {
+  rosin::grbl_simulator sled;
+  sled.settings[120] = 1000;
+  CHECK(sled.receive("G21G91G1X-100F12000\n", 0) == "ok\r\n");
+  CHECK(sled.receive("!", 0.3).empty());
+  CHECK(sled.receive("?", 0.4).starts_with("<Hold:1|"));
+  CHECK(sled.receive("?", 0.6).starts_with("<Hold:0|MPos:-60.0"));  // 40 + 20 mm to slow down
+  CHECK(sled.receive("~?", 0.7).starts_with("<Run|"));
+  CHECK(sled.receive("?", 1.5).starts_with("<Idle|MPos:-100.000"));
+  CHECK(sled.receive("G91G1X-301F12000\n", 1.5).starts_with("ALARM:2"));
+  CHECK(sled.receive("G91G1X-1F12000\n", 1.5) == "error:9\r\n");
+  CHECK(sled.receive("$X\n", 1.5).find("ok") != std::string::npos);
+  CHECK(sled.receive("G91G1X50F12000\n", 1.5) == "ok\r\n");
+  CHECK(sled.receive("$120=5\n", 1.6) == "error:8\r\n");
+  CHECK(sled.receive("\x18", 1.7).find("ALARM:3") != std::string::npos);
+  CHECK(sled.receive("$X\n", 1.7).find("ok") != std::string::npos);
+  sled.switch_mm = -70;
+  CHECK(sled.receive("G91G1X60F12000\n", 1.7) == "ok\r\n");
+  CHECK(sled.advance(3).starts_with("ALARM:1"));
+  CHECK(sled.position_m() == doctest::Approx(-0.07).epsilon(0.01));
+}
