@@ -3,6 +3,7 @@
 // rosin fit: what the plucks of a rig say of string, contact and sensors.
 //
 #include "commands.hpp"
+#include "emit_header.hpp"
 #include "fit_pickup_rig.hpp"
 #include "fit_report.hpp"
 
@@ -16,6 +17,7 @@ namespace {
 struct options {
   std::string rig, json_file, report;
   bool force = false, strict = false, pickup = false;
+  header_options header;
 };
 
 std::size_t width_of(const std::string& text) {  // of UTF-8
@@ -83,7 +85,7 @@ exit_code deliver(const Calibration& c, const options& given, const provenance& 
 
 exit_code run(const options& given, provenance from) {
   const bool as_json = given.json_file == "-";
-  for (const auto* file : {&given.json_file, &given.report})
+  for (const auto* file : {&given.json_file, &given.report, &given.header.path})
     if (!file->empty())
       if (const auto why = may_write_file(*file, given.force)) return fail(why->message, as_json);
   if (!given.report.empty())
@@ -91,6 +93,7 @@ exit_code run(const options& given, provenance from) {
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
   if (given.pickup || !folder->rig.has_both_forces()) {
+    if (!given.header.path.empty()) return fail(folder->rig.file + ": --emit-header: force transducers at both ends are needed", as_json);
     const auto fitted = calibrate_pickups(folder->rig, from);
     if (!fitted) return fail(fitted.error(), as_json);
     return deliver(*fitted, given, from, [](const pickup_calibration& c) {
@@ -104,7 +107,12 @@ exit_code run(const options& given, provenance from) {
   }
   const auto fitted = calibrate(folder->rig, from, !given.report.empty());
   if (!fitted) return fail(fitted.error(), as_json);
-  return deliver(*fitted, given, from, print_text);
+  std::vector<std::string> said;
+  if (!given.header.path.empty())
+    if (const auto why = write_header(given.header, given.force, set_of(*fitted), from, said)) return fail(why->message, as_json);
+  const exit_code done = deliver(*fitted, given, from, print_text);
+  for (const auto& line : said) (as_json ? std::cerr : std::cout) << line << '\n';
+  return done;
 }
 
 }  // namespace
@@ -121,6 +129,7 @@ void add_fit(CLI::App& app, exit_code& result) {
   command->add_flag("--pickup", given->pickup, "Fit each channel by itself even where both ends have a force transducer");
   command->add_flag("--strict", given->strict, "Exit with 1 on warnings as well");
   add_force_option(*command, given->force);
+  add_header_options(*command, given->header);
   command->footer(
       "All plucks that are not marked hold_out are fitted together: pitch, place of the contact, delays to both ends,\n"
       "bending stiffness, loss, gains and noise of the channels, instant and force of each release. Each value comes with\n"

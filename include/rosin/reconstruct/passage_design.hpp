@@ -28,19 +28,40 @@ namespace rosin {
 /// A design in double, of any length.
 struct passage_plan {
   std::array<fir, 4> passage;                   ///< from newtons as recorded; empty where the version has no use for it
-  std::vector<double> admittance, near_field;   ///< as in passage_coefficients
+  std::vector<double> admittance, near_field;   ///< from the middle: y[0] and y[k] on both sides; n[k] on the older, -n[k] on the newer
   bow_version version = bow_version::both;
 
   [[nodiscard]] int reach_ahead() const noexcept { return half_length() + extreme([](const fir& k) { return -k.first; }); }
   [[nodiscard]] int reach_back() const noexcept { return half_length() + extreme([](const fir& k) { return k.last(); }); }
   [[nodiscard]] int half_length() const noexcept { return static_cast<int>(admittance.size()) - 1; }
+  /// Taps of the longest passage, and frames that one output depends on; with what the run-time part pads them by.
   [[nodiscard]] std::size_t longest() const noexcept {
     std::size_t n = 0;
     for (const fir& k : passage) n = std::max(n, k.taps.size());
-    return n;
+    return (n + 3) / 4 * 4;
+  }
+  [[nodiscard]] std::size_t span() const noexcept { return static_cast<std::size_t>(reach_ahead() + reach_back()) + 1 + 2 * 3; }
+
+  /// A passage as the run-time part wants it: oldest sample first, zeros before it up to a multiple of 4.
+  [[nodiscard]] std::vector<double> arrival_taps(std::size_t p) const {
+    std::vector<double> out((passage[p].taps.size() + 3) / 4 * 4, 0.0);
+    std::copy_backward(passage[p].taps.rbegin(), passage[p].taps.rend(), out.end());
+    return out;
+  }
+  /// y and n likewise.
+  [[nodiscard]] std::vector<double> arrival_admittance() const { return both_sides(admittance, 1); }
+  [[nodiscard]] std::vector<double> arrival_near_field() const { return both_sides(near_field, -1); }
+  [[nodiscard]] std::size_t newest_age(std::size_t p) const noexcept {
+    return passage[p].taps.empty() ? 0 : static_cast<std::size_t>(reach_ahead() - half_length() + passage[p].first);
   }
 
 private:
+  static std::vector<double> both_sides(const std::vector<double>& half, double newer) {
+    std::vector<double> out((2 * half.size() + 2) / 4 * 4, 0.0);
+    const std::size_t middle = out.size() - half.size();
+    for (std::size_t k = 0; k < half.size(); ++k) out[middle + k] = newer * half[k], out[middle - k] = half[k];
+    return out;
+  }
   template <class Of>
   [[nodiscard]] int extreme(Of of) const noexcept {
     int most = 0;
@@ -155,8 +176,7 @@ template <class Physics = full_physics>
 /// Into fixed size. Fails where Taps, Line or Short do not hold the plan.
 template <class T, std::size_t Taps, std::size_t Line, std::size_t Short>
 [[nodiscard]] outcome<passage_coefficients<T, Taps, Short>> fixed_size(const passage_plan& plan) {
-  const std::size_t longest = (plan.longest() + 3) / 4 * 4, half = plan.admittance.size() - 1;
-  const std::size_t span = static_cast<std::size_t>(plan.reach_ahead() + plan.reach_back()) + 4, chunk = detail::passage_chunk<T>;
+  const std::size_t longest = plan.longest(), half = plan.admittance.size() - 1, span = plan.span(), chunk = detail::passage_chunk<T>;
   if (longest > Taps) return failure{"a passage needs " + std::to_string(longest) + " taps, there is room for " + std::to_string(Taps)};
   if (half != Short) return failure{"the short filters have half-length " + std::to_string(half) + ", not " + std::to_string(Short)};
   if (span + chunk > Line)
@@ -166,14 +186,14 @@ template <class T, std::size_t Taps, std::size_t Line, std::size_t Short>
   out.version = plan.version;
   out.latency = static_cast<std::size_t>(plan.reach_ahead());
   out.reach = span;
-  std::transform(plan.admittance.begin(), plan.admittance.end(), out.admittance.begin(), to);
-  std::transform(plan.near_field.begin(), plan.near_field.end(), out.near_field.begin(), to);
+  const std::vector<double> admittance = plan.arrival_admittance(), near_field = plan.arrival_near_field();
+  std::transform(admittance.begin(), admittance.end(), out.admittance.begin(), to);
+  std::transform(near_field.begin(), near_field.end(), out.near_field.begin(), to);
   for (std::size_t p = 0; p < 4; ++p) {
-    const fir& k = plan.passage[p];
-    if (k.taps.empty()) continue;
-    out.passage[p].count = (k.taps.size() + 3) / 4 * 4;  // zeros before the oldest
-    out.passage[p].newest_age = static_cast<std::size_t>(plan.reach_ahead() - plan.half_length() + k.first);
-    std::transform(k.taps.rbegin(), k.taps.rend(), out.passage[p].taps.begin() + static_cast<std::ptrdiff_t>(out.passage[p].count - k.taps.size()), to);
+    const std::vector<double> taps = plan.arrival_taps(p);
+    out.passage[p].count = taps.size();
+    out.passage[p].newest_age = plan.newest_age(p);
+    std::transform(taps.begin(), taps.end(), out.passage[p].taps.begin(), to);
   }
   return out;
 }

@@ -7,7 +7,7 @@
 //     near --+--> G/D1 --> a1       force_near = a1 + b2      velocity_near = y * (a1 - b1) + n * force
 //            +--> G D1 --> b1       force_far  = a2 + b1      velocity_far  = y * (a2 - b2) + n * force
 //     far  --+--> G/D2 --> a2
-//            +--> G D2 --> b2       y = 1/(2 Z_f): even in time, short;   n, the near field: odd, short;   force: the mean
+//            +--> G D2 --> b2     y = 1/(2 Z_f): even in time, short;   n, the near field: odd, short;   force: the mean
 //
 // The force is that of the whole-record reconstruction to rounding, the velocity too but for the error that y and n were designed
 // for. Fixed size, no heap, no libm. One version of the force alone, bow_version::near or far, asks for less look-ahead:
@@ -32,14 +32,15 @@ namespace rosin {
 /// Which of the two versions of force and velocity is made; of one alone both fields of a frame hold it.
 enum class bow_version { both, near, far };
 
-/// Everything the run-time part has to be given (passage_design.hpp, or the header that `rosin fit --emit-header` writes).
+/// Everything the run-time part has to be given (passage_design.hpp, or the header that `rosin fit --emit-header` writes). Taps stand in
+/// order of arrival, oldest sample first; where their number is no multiple of 4, zeros stand before them.
 template <class T, std::size_t Taps, std::size_t Short>
 struct passage_coefficients {
-  std::array<streaming_kernel<T, Taps>, 4> passage{};  ///< near back, near out, far back, far out; counts are multiples of 4
-  std::array<T, Short + 1> admittance{};               ///< y: y[0] in the middle, y[k] on both sides of it
-  std::array<T, Short + 1> near_field{};               ///< n: + n[k] on the older, - n[k] on the newer side; n[0] = 0
-  std::size_t latency = 0;                             ///< frames
-  std::size_t reach = 0;                               ///< frames that one output depends on
+  static constexpr std::size_t short_taps = (2 * Short + 4) / 4 * 4;
+  std::array<streaming_kernel<T, Taps>, 4> passage{};           ///< near back, near out, far back, far out
+  std::array<T, short_taps> admittance{}, near_field{};         ///< y and n, 2 Short + 1 taps each
+  std::size_t latency = 0;                                      ///< frames
+  std::size_t reach = 0;                                        ///< frames that one output depends on
   bow_version version = bow_version::both;
 };
 
@@ -76,22 +77,40 @@ namespace detail {
 template <class T>
 inline constexpr std::size_t passage_chunk = register_lanes<T> == 1 ? 4 : (register_lanes<T> < 4 ? 8 : 16);
 
+/// Adds a[j] b[j] to the lanes of `sum`.
+template <class Vector, class T>
+void add_product(Vector& sum, const T* a, const T* b) noexcept {
+  Vector x, y;
+  std::memcpy(&x, a, sizeof x);
+  std::memcpy(&y, b, sizeof y);
+  sum += x * y;
+}
+
 /// sum_j taps[j] x[j]; count is a multiple of 4.
 template <class T>
 [[nodiscard]] T passage_dot(const T* taps, const T* x, std::size_t count) noexcept {
-  constexpr std::size_t width = register_lanes<T> == 1 ? 1 : 16 / sizeof(T);
-  using vector = typename lanes_of<T, width>::type;
-  std::array<vector, 4 / width> sum{};
-  for (std::size_t j = 0; j < count; j += 4)
-    for (std::size_t p = 0; p < sum.size(); ++p) {
-      vector a, b;
-      std::memcpy(&a, taps + j + p * width, sizeof a);
-      std::memcpy(&b, x + j + p * width, sizeof b);
-      sum[p] += a * b;
+  constexpr std::size_t narrow = register_lanes<T> < 4 ? register_lanes<T> : 4, wide = register_lanes<T> < 8 ? narrow : 8;
+  using vector = typename lanes_of<T, wide>::type;
+  vector even{}, odd{};
+  std::size_t j = 0;
+  if constexpr (wide > narrow)
+    for (; j + 2 * wide <= count; j += 2 * wide) {
+      add_product(even, taps + j, x + j);
+      add_product(odd, taps + j + wide, x + j + wide);
     }
-  std::array<T, 4> lane;
+  even += odd;
+  std::array<typename lanes_of<T, narrow>::type, 4 / narrow * (wide / narrow)> sum;
+  if constexpr (wide > narrow) std::memcpy(sum.data(), &even, sizeof even);
+  else sum = {};
+  for (; j < count; j += 4)
+    for (std::size_t p = 0; p < 4 / narrow; ++p) add_product(sum[p], taps + j + p * narrow, x + j + p * narrow);
+  if constexpr (sum.size() > 1) sum[0] += sum[1];
+  if constexpr (sum.size() > 2) sum[0] += sum[2] + sum[3];
+  std::array<T, narrow> lane;
   std::memcpy(lane.data(), sum.data(), sizeof lane);
-  return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+  if constexpr (narrow == 4) return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+  else if constexpr (narrow == 2) return lane[0] + lane[1];
+  else return lane[0];
 }
 
 /// The same for x, x + 1, ...: a chunk of outputs at once, each tap fetched once.
@@ -128,7 +147,7 @@ public:
   static constexpr std::size_t chunk = detail::passage_chunk<T>;
   static_assert(Taps % 4 == 0, "kernels are run four taps at a time");
 
-  explicit passage_reconstructor(const coefficients_type& coefficients) noexcept : c_{coefficients} {}
+  constexpr explicit passage_reconstructor(const coefficients_type& coefficients) noexcept : c_{coefficients} {}
 
   /// Total on any input. What rests on a NaN, an infinity or on frames before the first is NaN, never made up.
   output_type operator()(const input_type& frame) noexcept {
@@ -194,16 +213,15 @@ private:
     return {near, far, there_and_back_near, there_and_back_far, (near + far) / T(2)};
   }
 
+  static constexpr std::size_t short_taps = coefficients_type::short_taps;
+
   [[nodiscard]] output_type latest() const noexcept {
-    const T *f = mixed_.at(force, Short), *near = mixed_.at(round_near, Short), *far = mixed_.at(round_far, Short);
-    T velocity_near = c_.admittance[0] * near[0], velocity_far = c_.admittance[0] * far[0], near_field = 0;
-    for (std::ptrdiff_t k = 1; k <= static_cast<std::ptrdiff_t>(Short); ++k) {
-      const T y = c_.admittance[static_cast<std::size_t>(k)];
-      velocity_near += y * (near[-k] + near[k]);
-      velocity_far += y * (far[-k] + far[k]);
-      near_field += c_.near_field[static_cast<std::size_t>(k)] * (f[-k] - f[k]);
-    }
-    return {*mixed_.at(force_near, Short), *mixed_.at(force_far, Short), velocity_near + near_field, velocity_far + near_field};
+    const auto dot = [&](const std::array<T, short_taps>& taps, signal s) {
+      return detail::passage_dot(taps.data(), mixed_.at(s, short_taps - 1), short_taps);
+    };
+    const T near_field = dot(c_.near_field, force);
+    return {*mixed_.at(force_near, Short), *mixed_.at(force_far, Short), dot(c_.admittance, round_near) + near_field,
+            dot(c_.admittance, round_far) + near_field};
   }
 
   void run_chunk(const input_type* in, output_type* out) noexcept {
@@ -224,26 +242,20 @@ private:
 
   /// latest(), for each frame of a chunk.
   void put_chunk(output_type* out) const noexcept {
-    constexpr std::size_t middle = Short + chunk - 1;
-    const T *f = mixed_.at(force, middle), *near = mixed_.at(round_near, middle), *far = mixed_.at(round_far, middle);
-    row velocity_near, velocity_far;
-    for (std::size_t i = 0; i < chunk; ++i) velocity_near[i] = c_.admittance[0] * near[i], velocity_far[i] = c_.admittance[0] * far[i];
-    for (std::size_t k = 1; k <= Short; ++k) {
-      const T y = c_.admittance[k], n = c_.near_field[k];
-      const T *f0 = f - k, *f1 = f + k, *near0 = near - k, *near1 = near + k, *far0 = far - k, *far1 = far + k;
-      for (std::size_t i = 0; i < chunk; ++i) {
-        const T near_field = n * (f0[i] - f1[i]);
-        velocity_near[i] += y * (near0[i] + near1[i]) + near_field;
-        velocity_far[i] += y * (far0[i] + far1[i]) + near_field;
-      }
-    }
-    const T *force_n = mixed_.at(force_near, middle), *force_f = mixed_.at(force_far, middle);
-    for (std::size_t i = 0; i < chunk; ++i) out[i] = {force_n[i], force_f[i], velocity_near[i], velocity_far[i]};
+    const auto fir = [&](const std::array<T, short_taps>& taps, signal s, row& to) {
+      detail::passage_fir(taps.data(), mixed_.at(s, short_taps + chunk - 2), short_taps, to.data());
+    };
+    row near, far, near_field;
+    fir(c_.admittance, round_near, near);
+    fir(c_.admittance, round_far, far);
+    fir(c_.near_field, force, near_field);
+    const T *force_n = mixed_.at(force_near, Short + chunk - 1), *force_f = mixed_.at(force_far, Short + chunk - 1);
+    for (std::size_t i = 0; i < chunk; ++i) out[i] = {force_n[i], force_f[i], near[i] + near_field[i], far[i] + near_field[i]};
   }
 
   coefficients_type c_;
   doubled_lines<T, 2, Line> lines_;
-  doubled_lines<T, signals, 2 * Short + chunk> mixed_;
+  doubled_lines<T, signals, short_taps + chunk> mixed_;
   std::size_t finite_ = 0;
 };
 
