@@ -26,6 +26,7 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 namespace rosin {
 
@@ -48,18 +49,18 @@ struct passage_coefficients {
 template <class T, std::size_t Signals, std::size_t Length>
 class doubled_lines {
 public:
-  constexpr void push(const std::array<T, Signals>& frame) noexcept {
-    head_ = head_ + 1 == Length ? 0 : head_ + 1;
-    for (std::size_t s = 0; s < Signals; ++s) line_[s][head_] = line_[s][head_ + Length] = frame[s];
-  }
   template <std::size_t Count>
   constexpr void push(const std::array<std::array<T, Count>, Signals>& frames) noexcept {
-    const std::size_t start = head_ + 1 == Length ? 0 : head_ + 1, fit = Length - start < Count ? Length - start : Count;
-    for (std::size_t s = 0; s < Signals; ++s) {
-      for (std::size_t i = 0; i < fit; ++i) line_[s][start + i] = line_[s][start + Length + i] = frames[s][i];
-      for (std::size_t i = fit; i < Count; ++i) line_[s][i - fit] = line_[s][Length + i - fit] = frames[s][i];
-    }
-    head_ = fit == Count ? start + Count - 1 : Count - fit - 1;
+    const std::size_t start = head_ + 1;
+    if (start + Count <= Length)
+      for (std::size_t s = 0; s < Signals; ++s) copy(frames[s], line_[s].data() + start);
+    else
+      for (std::size_t i = 0, at = start; i < Count; ++i, ++at)
+        for (std::size_t s = 0; s < Signals; ++s) {
+          at = at >= Length ? 0 : at;
+          line_[s][at] = line_[s][at + Length] = frames[s][i];
+        }
+    head_ = start + Count <= Length ? head_ + Count : head_ + Count - Length;
   }
   /// The sample that is `age` frames old, < Length; those after it follow.
   [[nodiscard]] constexpr const T* at(std::size_t signal, std::size_t age) const noexcept {
@@ -67,6 +68,12 @@ public:
   }
 
 private:
+  template <std::size_t Count>
+  static constexpr void copy(const std::array<T, Count>& from, T* to) noexcept {
+#pragma GCC unroll 16
+    for (std::size_t i = 0; i < Count; ++i) to[i] = to[i + Length] = from[i];
+  }
+
   std::array<std::array<T, 2 * Length>, Signals> line_{};
   std::size_t head_ = 0;
 };
@@ -75,15 +82,22 @@ namespace detail {
 
 /// Outputs of one run over the taps: what the registers hold, four sums at least.
 template <class T>
-inline constexpr std::size_t passage_chunk = register_lanes<T> == 1 ? 4 : (register_lanes<T> < 4 ? 8 : 16);
+inline constexpr std::size_t passage_chunk = register_lanes<T> < 4 ? 8 : 16;
+
+template <class Vector, class T>
+[[nodiscard]] Vector load_lanes(const T* from) noexcept {
+  if constexpr (std::is_same_v<Vector, T>) return *from;
+  else {
+    Vector x;
+    std::memcpy(&x, from, sizeof x);
+    return x;
+  }
+}
 
 /// Adds a[j] b[j] to the lanes of `sum`.
 template <class Vector, class T>
 void add_product(Vector& sum, const T* a, const T* b) noexcept {
-  Vector x, y;
-  std::memcpy(&x, a, sizeof x);
-  std::memcpy(&y, b, sizeof y);
-  sum += x * y;
+  sum += load_lanes<Vector>(a) * load_lanes<Vector>(b);
 }
 
 /// sum_j taps[j] x[j]; count is a multiple of 4.
@@ -103,6 +117,7 @@ template <class T>
   if constexpr (wide > narrow) std::memcpy(sum.data(), &even, sizeof even);
   else sum = {};
   for (; j < count; j += 4)
+#pragma GCC unroll 4
     for (std::size_t p = 0; p < 4 / narrow; ++p) add_product(sum[p], taps + j + p * narrow, x + j + p * narrow);
   if constexpr (sum.size() > 1) sum[0] += sum[1];
   if constexpr (sum.size() > 2) sum[0] += sum[2] + sum[3];
@@ -124,11 +139,7 @@ void passage_fir(const T* taps, const T* x, std::size_t count, T* out) noexcept 
 #pragma GCC unroll 4
     for (std::size_t t = 0; t < 4; ++t)
 #pragma GCC unroll 16
-      for (std::size_t p = 0; p < parts; ++p) {
-        vector in;
-        std::memcpy(&in, x + j + t + p * width, sizeof in);
-        sum[t % sets][p] += taps[j + t] * in;
-      }
+      for (std::size_t p = 0; p < parts; ++p) sum[t % sets][p] += taps[j + t] * load_lanes<vector>(x + j + t + p * width);
   for (std::size_t s = 1; s < sets; ++s)
     for (std::size_t p = 0; p < parts; ++p) sum[0][p] += sum[s][p];
   std::memcpy(out, sum[0].data(), sizeof sum[0]);
@@ -153,10 +164,10 @@ public:
   output_type operator()(const input_type& frame) noexcept {
     const T zero = (frame.near_N - frame.near_N) + (frame.far_N - frame.far_N);  // NaN where one is not finite
     finite_ = zero == T(0) ? finite_ + (known() ? 0 : 1) : 0;
-    lines_.push({frame.near_N, frame.far_N});
-    std::array<T, 4> wave;
-    for (std::size_t p = 0; p < 4; ++p) wave[p] = detail::passage_dot(taps(p), samples(p, 0), c_.passage[p].count);
-    mixed_.push(mixed(wave));
+    lines_.push(std::array<std::array<T, 1>, 2>{{{frame.near_N}, {frame.far_N}}});
+    std::array<std::array<T, 1>, 4> wave;
+    for (std::size_t p = 0; p < 4; ++p) wave[p][0] = detail::passage_dot(taps(p), samples(p, 0), c_.passage[p].count);
+    mix(wave);
     return known() ? latest() : unknown();
   }
 
@@ -206,13 +217,6 @@ private:
     return lines_.at(passage / 2, k.newest_age + k.count + ago - (k.count > 0 ? 1 : 0));
   }
 
-  [[nodiscard]] std::array<T, signals> mixed(const std::array<T, 4>& w) const noexcept {
-    T near = w[0] + w[3], far = w[2] + w[1], there_and_back_near = w[0] - w[1], there_and_back_far = w[2] - w[3];
-    if (c_.version == bow_version::near) far = near, there_and_back_far = there_and_back_near;
-    if (c_.version == bow_version::far) near = far, there_and_back_near = there_and_back_far;
-    return {near, far, there_and_back_near, there_and_back_far, (near + far) / T(2)};
-  }
-
   static constexpr std::size_t short_taps = coefficients_type::short_taps;
 
   [[nodiscard]] output_type latest() const noexcept {
@@ -231,13 +235,24 @@ private:
     std::array<row, 4> wave;
     for (std::size_t p = 0; p < 4; ++p)
       detail::passage_fir(taps(p), samples(p, chunk - 1), c_.passage[p].count, wave[p].data());
-    std::array<row, signals> mix;
-    for (std::size_t i = 0; i < chunk; ++i) {
-      const std::array<T, signals> m = mixed({wave[0][i], wave[1][i], wave[2][i], wave[3][i]});
-      for (std::size_t s = 0; s < signals; ++s) mix[s][i] = m[s];
-    }
-    mixed_.push(mix);
+    mix(wave);
     put_chunk(out);
+  }
+
+  template <std::size_t Count>
+  void mix(const std::array<std::array<T, Count>, 4>& wave) noexcept {
+    std::array<std::array<T, Count>, signals> out;
+    const bool near_only = c_.version == bow_version::near, far_only = c_.version == bow_version::far;
+    for (std::size_t i = 0; i < Count; ++i) {
+      const T near = wave[0][i] + wave[3][i], far = wave[2][i] + wave[1][i];
+      const T trip_near = wave[0][i] - wave[1][i], trip_far = wave[2][i] - wave[3][i];
+      out[force_near][i] = far_only ? far : near;
+      out[force_far][i] = near_only ? near : far;
+      out[round_near][i] = far_only ? trip_far : trip_near;
+      out[round_far][i] = near_only ? trip_near : trip_far;
+      out[force][i] = (out[force_near][i] + out[force_far][i]) / T(2);
+    }
+    mixed_.push(out);
   }
 
   /// latest(), for each frame of a chunk.
@@ -255,7 +270,7 @@ private:
 
   coefficients_type c_;
   doubled_lines<T, 2, Line> lines_;
-  doubled_lines<T, signals, short_taps + chunk> mixed_;
+  doubled_lines<T, signals, short_taps + 4 * chunk> mixed_;
   std::size_t finite_ = 0;
 };
 
