@@ -12,6 +12,7 @@ void add_check(CLI::App& app, exit_code& result);
 void add_compare(CLI::App& app, exit_code& result);
 void add_diagnose(CLI::App& app, exit_code& result);
 void add_fit(CLI::App& app, exit_code& result);
+void add_record(CLI::App& app, exit_code& result);
 void add_reconstruct(CLI::App& app, exit_code& result);
 void add_simulate(CLI::App& app, exit_code& result);
 void add_sweep(CLI::App& app, exit_code& result);

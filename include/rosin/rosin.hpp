@@ -108,6 +108,7 @@
 #include <rosin/friction/friction_law.hpp>
 #include <rosin/friction/slip_phases.hpp>
 #include <rosin/friction/slip_samples.hpp>
+#include <rosin/friction/slip_watch.hpp>
 #include <rosin/friction/thermal_plastic.hpp>
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/friction/yield_curve.hpp>
@@ -161,6 +162,7 @@
 #include <rosin/hardware/capture.hpp>
 #include <rosin/hardware/cobs.hpp>
 #include <rosin/hardware/crc32.hpp>
+#include <rosin/hardware/durable_text.hpp>
 #include <rosin/hardware/frame_packet.hpp>
 #include <rosin/hardware/frame_ring.hpp>
 #include <rosin/hardware/frames.hpp>

@@ -8,6 +8,7 @@
 #include <rosin/friction/thermal_plastic.hpp>
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/friction/yield_curve.hpp>
+#include <rosin/friction/slip_watch.hpp>
 
 namespace {
 
@@ -37,4 +38,9 @@ extern "C" float rosin_heat(const rosin::yield_curve<float>* strength, const lin
   return stroke(rosin::thermal_plastic<float>{*strength, heat}, lines, count) +
          stroke(rosin::enhanced_thermal<float>{*strength, rosin::rod_shear_shape<float>(), heat}, lines, count) +
          rosin::contact_heat<float>{heat}.steady_loss_W_K(0.1F, 0.3F);
+}
+
+extern "C" bool rosin_slips(float velocity_m_s) noexcept {
+  static rosin::slip_watch<float> watch{0.2F};
+  return watch(velocity_m_s) == rosin::contact_state::slipping;
 }

@@ -36,6 +36,22 @@ public:
     return out;
   }
 
+  /// Why the stroke cannot be made as asked, if so; nothing moves.
+  [[nodiscard]] std::optional<failure> refused(const stroke& way) {
+    const double mm_min = way.speed_m_s * 60e3;
+    if (!(way.speed_m_s > 0) || !(way.acceleration_m_s2 > 0) || !std::isfinite(way.distance_m) || way.distance_m == 0)
+      return failure{link_.name() + ": a stroke needs a distance, and a speed and an acceleration above zero"};
+    if (way.steady_m() < 0)
+      return failure{link_.name() + ": a stroke of " + figure(way.distance_m * 1e3) + " mm never reaches " + figure(way.speed_m_s) + " m/s at " + figure(way.acceleration_m_s2) + " m/s2"};
+    if (mm_min > setting(110)) return refusal("a speed", mm_min, setting(110), "mm/min");
+    const auto now = status();
+    if (!now) return failure{now.error()};
+    if (now->state != motion_state::idle) return failure{link_.name() + ": the sled is not ready" + (now->reason.empty() ? "" : ": " + now->reason)};
+    const double to_mm = (now->position_m + way.distance_m) * 1e3;
+    if (setting(20) == 1 && (to_mm > 0.0005 || to_mm < -setting(130) - 0.0005))
+      return failure{link_.name() + ": the stroke would end at " + figure(to_mm) + " mm, outside of " + figure(-setting(130)) + " to 0 mm"};
+    return std::nullopt;
+  }
   [[nodiscard]] std::optional<failure> start(const stroke& way) {
     if (auto bad = refused(way)) return bad;
     const double acceleration = way.acceleration_m_s2 * 1e3;
@@ -105,21 +121,6 @@ private:
   }
   [[nodiscard]] failure refusal(const std::string& what, double asked, double limit, const char* unit) const {
     return failure{link_.name() + ": " + what + " of " + figure(asked) + " " + unit + " is beyond the sled's " + figure(limit) + " " + unit};
-  }
-  [[nodiscard]] std::optional<failure> refused(const stroke& way) {
-    const double mm_min = way.speed_m_s * 60e3;
-    if (!(way.speed_m_s > 0) || !(way.acceleration_m_s2 > 0) || !std::isfinite(way.distance_m) || way.distance_m == 0)
-      return failure{link_.name() + ": a stroke needs a distance, and a speed and an acceleration above zero"};
-    if (way.steady_m() < 0)
-      return failure{link_.name() + ": a stroke of " + figure(way.distance_m * 1e3) + " mm never reaches " + figure(way.speed_m_s) + " m/s at " + figure(way.acceleration_m_s2) + " m/s2"};
-    if (mm_min > setting(110)) return refusal("a speed", mm_min, setting(110), "mm/min");
-    const auto now = status();
-    if (!now) return failure{now.error()};
-    if (now->state != motion_state::idle) return failure{link_.name() + ": the sled is not ready" + (now->reason.empty() ? "" : ": " + now->reason)};
-    const double to_mm = (now->position_m + way.distance_m) * 1e3;
-    if (setting(20) == 1 && (to_mm > 0.0005 || to_mm < -setting(130) - 0.0005))
-      return failure{link_.name() + ": the stroke would end at " + figure(to_mm) + " mm, outside of " + figure(-setting(130)) + " to 0 mm"};
-    return std::nullopt;
   }
 
   [[nodiscard]] outcome<std::string> next_line() {

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <rosin/hardware/byte_link.hpp>
+#include <rosin/hardware/durable_text.hpp>
 #include <rosin/hardware/wav_header.hpp>
 
 #include <atomic>
@@ -29,7 +30,12 @@ namespace rosin {
 /// A file of the system.
 class posix_file {
 public:
-  [[nodiscard]] static outcome<posix_file> create(const std::string& path) { return opened(path, O_RDWR | O_CREAT | O_EXCL); }
+  [[nodiscard]] static outcome<posix_file> create(const std::string& path) {
+    auto out = opened(path, O_RDWR | O_CREAT | O_EXCL);
+    if (!out) return out;
+    if (auto bad = sync_folder_of(path)) return *bad;
+    return out;
+  }
   [[nodiscard]] static outcome<posix_file> existing(const std::string& path) { return opened(path, O_RDWR); }
 
   [[nodiscard]] std::optional<failure> append(std::span<const std::uint8_t> bytes) {

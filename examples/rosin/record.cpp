@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+//
+// rosin record: takes from a digitiser into a rig folder.
+//
+#include "commands.hpp"
+#include "recorder.hpp"
+#include "sled.hpp"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+namespace tool {
+
+namespace {
+
+struct options {
+  std::string rig, like;
+  input_options input;
+  recorder_options how;
+  sled_options stroke;
+  take_plan take;
+  int count = 1;
+  bool json = false;
+};
+
+/// Names, and the rig file as it will be, before anything is opened.
+std::optional<rosin::failure> plan(take_plan& take, const rig_file_writer& files) {
+  if (take.name.empty()) take.name = files.free_name(take.kind);
+  const auto rig = files.with(take);
+  if (!rig) return rosin::failure{rig.error()};
+  std::error_code ignored;
+  if (std::filesystem::exists(files.folder() + "/" + take.file(), ignored)) return rosin::failure{files.folder() + "/" + take.file() + ": exists already"};
+  return std::nullopt;
+}
+
+/// Takes of the folder that were broken off get their final heads.
+std::vector<std::string> mend(const std::string& folder) {
+  std::vector<std::string> out;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator{folder, ignored}) {
+    if (entry.path().extension() != ".wav") continue;
+    const auto mended = rosin::mend_take(entry.path().string());
+    if (mended && *mended) out.push_back(entry.path().string() + ": was broken off; its header is in order now");
+  }
+  return out;
+}
+
+bool channels_fit(const rosin::rig& rig, const rosin::frame_format& format, std::string& why) {
+  for (const auto& c : rig.channels)
+    if (c.index >= format.channels) {
+      why = rig.file + ": channels." + c.name + ".index is " + std::to_string(c.index) + ", the source has " + std::to_string(format.channels) + " channel(s)";
+      return false;
+    }
+  return true;
+}
+
+/// One take after the other; the first entry of `out` that is over is the last.
+std::optional<rosin::failure> record_all(const options& given, rig_file_writer& files, recorder& from, std::vector<take_report>& out) {
+  for (int i = 0; i < given.count && !stopped() && (out.empty() || !out.back().over); ++i) {
+    take_plan take = given.take;
+    if (auto why = plan(take, files)) return why;
+    std::optional<sled> moves;
+    recorder_hooks hooks;
+    if (!given.stroke.device.empty()) {
+      auto opened = sled::open(given.stroke, take.speed_m_s.value_or(0));
+      if (!opened) return rosin::failure{opened.error()};
+      moves.emplace(*std::move(opened));
+      hooks.begun = [&] { moves->begin(); };
+      hooks.over = [&](double) { return moves->over(); };
+      hooks.shows = [&] { return moves->shows(); };
+    }
+    out.push_back(from.record(take, &files, hooks));
+    if (!given.json) std::cout << summary_of(out.back()) << std::endl;
+  }
+  return std::nullopt;
+}
+
+exit_code run(const options& given) {
+  stop_on_signals();
+  auto files = rig_file_writer::open(given.rig, given.like);
+  if (!files) return fail(files.error(), given.json);
+  take_plan first = given.take;
+  if (const auto why = plan(first, *files)) return fail(why->message, given.json);
+  if (given.count > 1 && !given.take.name.empty()) return fail("--count: --take names one take only", given.json);
+  const auto notes = mend(given.rig);
+  for (const auto& line : notes) std::cerr << "rosin: " << line << '\n';
+  auto input = open_input(given.input);
+  if (!input) return fail(input.error(), given.json);
+  recorder from{*std::move(input), given.how};
+  if (std::string why; !channels_fit(*files->with(first), from.format(), why)) return fail(why, given.json);
+  std::vector<take_report> reports;
+  const auto why = record_all(given, *files, from, reports);
+  if (why && reports.empty()) return fail(why->message, given.json);
+  bool sound = !why && !reports.empty();
+  json takes = json::array();
+  for (const auto& r : reports) {
+    takes.push_back(to_json(r));
+    sound = sound && r.problems.empty() && r.frames > 0;
+  }
+  if (why) std::cerr << "rosin: " << why->message << '\n';
+  if (given.json) print({{"schema", 1}, {"rig", files->path()}, {"takes", takes}, {"mended", notes}, {"fullest_buffer", from.fullest_buffer()}});
+  return sound ? exit_code::ok : exit_code::finding;
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, exit_code& result) {
+  auto given = std::make_shared<options>();
+  given->how.trigger.before_s = 0.1;
+  CLI::App* command = app.add_subcommand("record", "Takes from a digitiser into a rig folder");
+  command->add_option("RIG", given->rig, "Folder of the rig; takes join its rig.toml")->required();
+  command->add_option("--like", given->like, "For a new folder: the rig file whose string, channels and so on are taken over, without its takes")->type_name("RIG");
+  add_input_options(*command, given->input);
+  add_take_options(*command, given->take);
+  add_recorder_options(*command, given->how);
+  add_sled_options(*command, given->stroke);
+  command->add_option("--count", given->count, "So many takes, one after the other")->check(CLI::Range(1, 1000))->capture_default_str();
+  add_json_option(*command, given->json);
+  command->footer("Samples are in the file at once and on the disk within a second; whatever happens, the take can be read.\n"
+                  "Ctrl-C ends the take. Exit status: 0 recorded; 1 recorded, but frames are missing or it broke off; 2 nothing was done.");
+  command->callback([given, &result] { result = run(*given); });
+}
+
+}  // namespace tool

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "sled.hpp"
+
+#include <cstdio>
+
+namespace tool {
+
+struct sled::shared {
+  shared(rosin::grbl_stage s, rosin::stroke w, double rest) : stage{std::move(s)}, way{w}, rest_s{rest} {}
+
+  void run(const std::stop_token& stop) {
+    const auto started = stage.start(way);
+    if (started) return end(started->message);
+    while (!stop.stop_requested()) {
+      const auto now = stage.status();
+      if (!now) return end(now.error());
+      {
+        const std::scoped_lock lock{mutex};
+        latest = *now;
+      }
+      if (now->state == rosin::motion_state::alarm) return end("the sled: " + now->reason);
+      if (now->state == rosin::motion_state::idle) return end("");
+      std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    }
+    if (const auto bad = stage.stop()) end(bad->message);
+  }
+  void end(const std::string& why) {
+    const std::scoped_lock lock{mutex};
+    problem = why;
+    finished = std::chrono::steady_clock::now();
+  }
+
+  rosin::grbl_stage stage;
+  rosin::stroke way;
+  double rest_s;
+  std::mutex mutex;
+  rosin::motion_status latest;
+  std::string problem;
+  std::optional<std::chrono::steady_clock::time_point> finished;
+  std::jthread thread;
+};
+
+sled::sled(std::unique_ptr<shared> s) : state_{std::move(s)} {}
+sled::~sled() { stop(); }
+sled::sled(sled&&) noexcept = default;
+sled& sled::operator=(sled&&) noexcept = default;
+
+rosin::outcome<sled> sled::open(const sled_options& given, double speed_m_s) {
+  auto link = rosin::byte_link::open(given.device, given.baud);
+  if (!link) return rosin::failure{link.error()};
+  auto stage = rosin::grbl_stage::open(*std::move(link));
+  if (!stage) return rosin::failure{stage.error()};
+  if (given.unlock)
+    if (const auto bad = stage->unlock()) return *bad;
+  if (given.home)
+    if (const auto bad = stage->home()) return *bad;
+  const rosin::stroke way{given.distance_m, speed_m_s, given.acceleration_m_s2};
+  if (const auto bad = stage->refused(way)) return *bad;
+  return sled{std::make_unique<shared>(*std::move(stage), way, given.rest_s)};
+}
+
+void sled::begin() {
+  state_->thread = std::jthread{[s = state_.get()](const std::stop_token& stop) { s->run(stop); }};
+}
+
+std::optional<std::string> sled::over() {
+  const std::scoped_lock lock{state_->mutex};
+  if (!state_->finished) return std::nullopt;
+  const std::chrono::duration<double> since = std::chrono::steady_clock::now() - *state_->finished;
+  if (state_->problem.empty() && since.count() < state_->rest_s) return std::nullopt;
+  return state_->problem;
+}
+
+std::string sled::shows() const {
+  const std::scoped_lock lock{state_->mutex};
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "sled %.0f mm %.3f m/s", 1e3 * state_->latest.position_m, state_->latest.speed_m_s);
+  return text.data();
+}
+
+void sled::stop() {
+  if (!state_ || !state_->thread.joinable()) return;
+  state_->thread.request_stop();
+  state_->thread.join();
+}
+
+void add_sled_options(CLI::App& command, sled_options& given) {
+  command.add_option("--sled", given.device, "Serial device of a sled that understands GRBL's G-code; it makes a stroke of --speed during the take")->type_name("DEVICE");
+  command.add_option("--distance", given.distance_m, "Of the stroke, with its sign")->type_name("M");
+  command.add_option("--acceleration", given.acceleration_m_s2, "Of the stroke")->type_name("M/S2")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--rest", given.rest_s, "The take goes on for so long after the stroke")->type_name("S")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command.add_option("--sled-baud", given.baud, "Speed of its serial line")->capture_default_str();
+  command.add_flag("--home", given.home, "Look for the home switch first");
+  command.add_flag("--unlock", given.unlock, "End an alarm first: you have looked, and the way is free");
+}
+
+}  // namespace tool

@@ -1,0 +1,55 @@
+# rosin record, killed at random moments: the take can be read, every sample is right, at most the last 0.1 s is missing, and
+# the rig file is whole. ROSIN_KILLS says how often (50 for a thorough look).
+. "$ROSIN_SOURCE/tests/tool/common.sh"
+make_rig described
+rate=48000
+
+# Numbered frames n, -n at the pace of the clock; how many have been handed over stands in the file `handed`.
+feed() {
+  perl -MTime::HiRes=time,sleep -e '
+    $SIG{PIPE} = sub { exit };
+    my ($rate, $block, $at, $start) = (48000, 240, 0, time);
+    open(my $log, ">", "handed") or die;
+    while (1) {
+      my $due = $start + $at / $rate;
+      sleep($due - time) if $due > time;
+      my $bytes = pack("l<*", map { ($_, -$_) } $at .. $at + $block - 1);
+      for (my $sent = 0; $sent < length $bytes; ) {
+        my $done = syswrite(STDOUT, $bytes, length($bytes) - $sent, $sent) // exit;
+        $sent += $done;
+      }
+      $at += $block;
+      sysseek($log, 0, 0);
+      syswrite($log, sprintf("%012d", $at));
+    }'
+}
+
+worst=0
+for trial in $(seq "${ROSIN_KILLS:-4}"); do
+  rm -rf rig fifo handed
+  mkfifo fifo
+  feed >fifo & feeder=$!
+  "$tool" record rig --like described --source - --bare --bits 32 --rate $rate --kind quiet <fifo >out.txt 2>err.txt & recorder=$!
+  sleep "$(perl -e 'srand($$ + $ARGV[0]); printf "%.4f", 0.15 + rand(1.2)' "$trial")"
+  handed=$(cat handed)
+  { kill -9 $recorder; wait $recorder; wait $feeder; } 2>/dev/null || true
+  missing=$(perl -e '
+    my ($handed) = @ARGV;
+    open(my $in, "<:raw", "rig/quiet-1.wav") or die "no take\n";
+    local $/; my $bytes = <$in>;
+    substr($bytes, 0, 4) eq "RIFF" or die "no header\n";
+    my @x = unpack("l<*", substr($bytes, 104));
+    for my $i (0 .. @x / 2 - 1) { die "frame $i is $x[2*$i], $x[2*$i+1]\n" if $x[2 * $i] != $i || $x[2 * $i + 1] != -$i }
+    print $handed - int(@x / 2)' "$((10#$handed))") || failures=$((failures + 1))
+  [ "${missing:-99999}" -le $((rate / 10)) ] || { echo "FAILED: kill $trial: $missing of $handed frames are missing"; failures=$((failures + 1)); }
+  [ "${missing:-0}" -le "$worst" ] || worst=$missing
+  expect 0 check rig
+done
+echo "at most $worst frames, $(perl -e "printf '%.3f', $worst / $rate") s, were missing"
+
+# the next recording puts the header in order
+expect 0 record rig --source described/quiet.wav --kind quiet
+says "was broken off; its header is in order now"
+same "$(perl -e 'open(my $in, "<:raw", "rig/quiet-1.wav"); local $/; my $b = <$in>; print unpack("V", substr($b, 100, 4)) - length(substr($b, 104))')" 0
+expect 0 check rig
+finish
