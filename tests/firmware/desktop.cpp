@@ -2,11 +2,13 @@
 //
 // The desktop's side of the firmware test, with the same emitted header:
 //
-//   desktop record TAKE.wav NEWTONS_PER_FULL_SCALE   TAKE (16 bit, two channels, header of 44 bytes) to forces.f32
-//   desktop compare                                  forces.f32 reconstructed here in double against the target's bow.f32
+//   desktop record TAKE.wav NEAR FAR   TAKE (16 bit, two channels, header of 44 bytes), newtons per full scale, to forces.f32
+//   desktop compare                    forces.f32 reconstructed here in double against the target's bow.f32
 //
 #include "rig.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -27,9 +29,9 @@ std::vector<T> read(const char* name, long skip = 0) {
   return out;
 }
 
-int record(const char* take, double full_scale_N) {
+int record(const char* take, std::array<double, 2> full_scale_N) {
   std::vector<float> newtons;
-  for (const std::int16_t x : read<std::int16_t>(take, 44)) newtons.push_back(static_cast<float>(full_scale_N * x / 32768));
+  for (const std::int16_t x : read<std::int16_t>(take, 44)) newtons.push_back(static_cast<float>(full_scale_N[newtons.size() % 2] * x / 32768));
   std::FILE* file = std::fopen("forces.f32", "wb");
   const bool written = file != nullptr && std::fwrite(newtons.data(), sizeof(float), newtons.size(), file) == newtons.size();
   return written && std::fclose(file) == 0 && newtons.size() > 10000 ? 0 : 1;
@@ -81,6 +83,6 @@ int compare() {
 
 int main(int argc, char** argv) {
   const std::string mode = argc > 1 ? argv[1] : "";
-  if (mode == "record" && argc == 4) return record(argv[2], std::atof(argv[3]));
+  if (mode == "record" && argc == 5) return record(argv[2], {std::atof(argv[3]), std::atof(argv[4])});
   return mode == "compare" ? compare() : 2;
 }
