@@ -52,6 +52,12 @@
 
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/calibrate/damped_lines.hpp>
+#include <rosin/calibrate/damped_spectrum.hpp>
+#include <rosin/calibrate/end_descent.hpp>
+#include <rosin/calibrate/end_fit.hpp>
+#include <rosin/calibrate/end_problem.hpp>
+#include <rosin/calibrate/end_search.hpp>
+#include <rosin/calibrate/moving_string.hpp>
 #include <rosin/calibrate/partial_baseband.hpp>
 #include <rosin/calibrate/partial_choice.hpp>
 #include <rosin/calibrate/partial_line.hpp>
@@ -162,6 +168,7 @@
 #include <rosin/hardware/capture.hpp>
 #include <rosin/hardware/cobs.hpp>
 #include <rosin/hardware/crc32.hpp>
+#include <rosin/hardware/csv_sink.hpp>
 #include <rosin/hardware/durable_text.hpp>
 #include <rosin/hardware/frame_packet.hpp>
 #include <rosin/hardware/frame_ring.hpp>

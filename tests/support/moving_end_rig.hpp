@@ -88,7 +88,8 @@ public:
   }
   /// Deflected by a force, at rest.
   void hold(double force_N) {
-    state_ = -(push_.array() * force_N / poles_.array()).matrix();
+    state_ = -(push_.array() * force_N / poles_.array()).matrix() - end_.cwiseProduct(push_) * force_N;
+    read();
     force_ = force_N;
     apply(force_N);
   }
