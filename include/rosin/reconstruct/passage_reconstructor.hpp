@@ -134,7 +134,11 @@ void passage_fir(const T* taps, const T* x, std::size_t count, T* out) noexcept 
   constexpr std::size_t width = register_lanes<T> < passage_chunk<T> ? register_lanes<T> : passage_chunk<T>;
   constexpr std::size_t parts = passage_chunk<T> / width, sets = parts >= 4 ? 1 : 4 / parts;
   using vector = typename lanes_of<T, width>::type;
-  std::array<std::array<vector, parts>, sets> sum{};
+  std::array<std::array<vector, parts>, sets> sum;
+#pragma GCC unroll 4
+  for (std::size_t s = 0; s < sets; ++s)
+#pragma GCC unroll 16
+    for (std::size_t p = 0; p < parts; ++p) sum[s][p] = vector{};
   for (std::size_t j = 0; j < count; j += 4)
 #pragma GCC unroll 4
     for (std::size_t t = 0; t < 4; ++t)
@@ -142,7 +146,8 @@ void passage_fir(const T* taps, const T* x, std::size_t count, T* out) noexcept 
       for (std::size_t p = 0; p < parts; ++p) sum[t % sets][p] += taps[j + t] * load_lanes<vector>(x + j + t + p * width);
   for (std::size_t s = 1; s < sets; ++s)
     for (std::size_t p = 0; p < parts; ++p) sum[0][p] += sum[s][p];
-  std::memcpy(out, sum[0].data(), sizeof sum[0]);
+#pragma GCC unroll 16
+  for (std::size_t p = 0; p < parts; ++p) std::memcpy(out + p * width, &sum[0][p], sizeof(vector));
 }
 
 }  // namespace detail
