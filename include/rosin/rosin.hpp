@@ -82,6 +82,7 @@
 #include <rosin/propagate/fir.hpp>
 #include <rosin/propagate/string_parameters.hpp>
 #include <rosin/propagate/termination.hpp>
+#include <rosin/propagate/termination_table.hpp>
 #include <rosin/propagate/transmission.hpp>
 
 #include <rosin/reconstruct/bow_point_transfer.hpp>

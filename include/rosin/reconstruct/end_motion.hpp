@@ -15,6 +15,7 @@
 #pragma once
 
 #include <rosin/condition/overlap_save.hpp>
+#include <rosin/math/fft.hpp>
 #include <rosin/propagate/fir.hpp>
 #include <rosin/propagate/termination.hpp>
 
@@ -100,6 +101,47 @@ inline void add_mode_motion(const admittance_mode& mode, std::span<const double>
 /// A rigid end stays where it is.
 [[nodiscard]] inline end_motion motion_of_end(const rigid_termination&, std::span<const double> force_N, const band&, double) {
   return {std::vector<double>(force_N.size(), 0.0), {0, force_N.size()}, 0};
+}
+
+namespace detail {
+
+/// z of any termination as a filter: by sampling within the band, over twice its memory.
+template <Termination End>
+[[nodiscard]] fir end_response(const End& end, const band& limits, double rate_Hz) {
+  std::size_t size = 4096;
+  while (static_cast<double>(size) < 2.2 * end.memory_s() * rate_Hz) size *= 2;
+  const double step_Hz = rate_Hz / static_cast<double>(size);
+  std::vector<std::complex<double>> bins(size / 2 + 1);
+  if constexpr (requires { end.on_grid(step_Hz, bins.size()); }) bins = end.on_grid(step_Hz, bins.size());
+  else
+    for (std::size_t k = 0; k < bins.size(); ++k) bins[k] = end.relative_admittance(step_Hz * static_cast<double>(k));
+  for (std::size_t k = 0; k < bins.size(); ++k) bins[k] *= limits(step_Hz * static_cast<double>(k));
+  std::vector<double> response(size);
+  eigen_fft<double>(size).inverse(bins.data(), response.data());
+  const int before = std::min(static_cast<int>(20 * rate_Hz / (limits.stop_Hz - limits.pass_Hz)) + 24, static_cast<int>(size / 8));
+  fir out{-before, std::vector<double>(response.end() - before, response.end())};
+  out.taps.insert(out.taps.end(), response.begin(), response.begin() + static_cast<std::ptrdiff_t>(size / 2));
+  return out;
+}
+
+}  // namespace detail
+
+/// Any other termination, by convolution.
+template <Termination End>
+[[nodiscard]] end_motion motion_of_end(const End& end, std::span<const double> force_N, const band& limits, double rate_Hz) {
+  const fir response = detail::end_response(end, limits, rate_Hz);
+  const auto ahead = static_cast<std::size_t>(-response.first), behind = static_cast<std::size_t>(response.last());
+  const double first = force_N.empty() ? 0.0 : force_N.front(), last = force_N.empty() ? 0.0 : force_N.back();
+  std::vector<double> longer(behind, first), moved(behind + force_N.size() + ahead);
+  longer.insert(longer.end(), force_N.begin(), force_N.end());
+  longer.insert(longer.end(), ahead, last);
+  const std::array<std::span<const double>, 1> in{longer};
+  const std::array<std::span<double>, 1> out_spans{moved};
+  block_convolver<double>(1, std::vector<fir>{response}).process(in, out_spans);
+  end_motion out{{moved.begin() + static_cast<std::ptrdiff_t>(behind), moved.end() - static_cast<std::ptrdiff_t>(ahead)}, {ahead, force_N.size()}, 0};
+  out.known = {std::min(ahead, force_N.size()), force_N.size() - std::min(ahead, force_N.size())};
+  out.settled = std::min(force_N.size(), out.known.begin + static_cast<std::size_t>(end.memory_s() * rate_Hz));
+  return out;
 }
 
 }  // namespace rosin

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/reconstruct/end_motion.hpp>
 
+#include <rosin/propagate/termination_table.hpp>
+
 #include <doctest/doctest.h>
 
 namespace {
@@ -79,4 +81,16 @@ TEST_CASE("a rigid end does not move") {
   const auto still = rosin::motion_of_end(rosin::rigid_termination{}, force, limits, rate_Hz);
   CHECK(still.times_impedance_N == std::vector<double>(100, 0.0));
   CHECK(still.known.end == 100);
+}
+
+TEST_CASE("a measured table moves as the modes that it was measured on") {
+  const rosin::modal_termination body{{{460, 15, 1.4}, {2400, 8, 6}}};
+  std::vector<rosin::measured_admittance> table;
+  for (double f = 4; f < 16e3; f += 4) table.push_back({f, body.relative_admittance(f) / 0.175});
+  const auto end = rosin::complete_admittance(table, 0.175);
+  REQUIRE(end);
+  const std::vector<double> force = tone(520, 4000);
+  const auto by_table = rosin::motion_of_end(*end, force, limits, rate_Hz), by_modes = rosin::motion_of_end(body, force, limits, rate_Hz);
+  CHECK(worst(by_table.times_impedance_N, by_modes.times_impedance_N, 300, 3700) < 0.01);
+  CHECK(by_table.settled > by_table.known.begin);
 }
