@@ -13,6 +13,8 @@ void add_compare(CLI::App& app, exit_code& result);
 void add_diagnose(CLI::App& app, exit_code& result);
 void add_fit(CLI::App& app, exit_code& result);
 void add_record(CLI::App& app, exit_code& result);
+void add_live(CLI::App& app, exit_code& result);
+void add_fake_rig(CLI::App& app, exit_code& result);
 void add_reconstruct(CLI::App& app, exit_code& result);
 void add_simulate(CLI::App& app, exit_code& result);
 void add_sweep(CLI::App& app, exit_code& result);

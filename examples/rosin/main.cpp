@@ -39,6 +39,8 @@ tool::exit_code run(int argc, char** argv) {
   app.footer("rosin COMMAND --help explains a command.\nExit status: 0 done, 1 something was found, 2 bad input or usage.");
   tool::add_check(app, result);
   tool::add_record(app, result);
+  tool::add_live(app, result);
+  tool::add_fake_rig(app, result);
   tool::add_fit(app, result);
   tool::add_reconstruct(app, result);
   tool::add_diagnose(app, result);

@@ -72,8 +72,8 @@ std::string block(const take_plan& t, const std::vector<std::string>& remarks) {
 void add_take_options(CLI::App& command, take_plan& given) {
   command.add_option("--take", given.name, "Name of the take; KIND-1, KIND-2, ... if left out")->type_name("NAME");
   command.add_option("--kind", given.kind, "pluck, bow or quiet")->check(CLI::IsMember({"pluck", "bow", "quiet"}))->capture_default_str();
-  command.add_option("--force", given.force_N, "Of a pluck: nominal breaking force of the wire")->type_name("N")->check(CLI::PositiveNumber);
-  command.add_option("--force-tolerance", given.force_tolerance, "Its relative tolerance")->check(CLI::Range(0.0, 1.0));
+  command.add_option("--wire", given.force_N, "Of a pluck: nominal breaking force of the wire")->type_name("N")->check(CLI::PositiveNumber);
+  command.add_option("--wire-tolerance", given.force_tolerance, "Its relative tolerance")->check(CLI::Range(0.0, 1.0));
   command.add_option("--position", given.position, "Of bow or pluck, where it is not the rig's [contact]")->check(CLI::Range(0.0, 1.0));
   command.add_option("--speed", given.speed_m_s, "Of a bow: the sled's speed once it is steady")->type_name("M/S")->check(CLI::PositiveNumber);
   command.add_option("--normal-force", given.normal_force_N, "Of a bow: force of the rod on the string")->type_name("N")->check(CLI::PositiveNumber);

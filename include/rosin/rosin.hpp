@@ -89,6 +89,7 @@
 #include <rosin/reconstruct/consistency.hpp>
 #include <rosin/reconstruct/dc_level.hpp>
 #include <rosin/reconstruct/end_motion.hpp>
+#include <rosin/reconstruct/end_sensitivity.hpp>
 #include <rosin/reconstruct/fine_tune.hpp>
 #include <rosin/reconstruct/passage_design.hpp>
 #include <rosin/reconstruct/passage_reconstructor.hpp>

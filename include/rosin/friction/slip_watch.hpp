@@ -1,9 +1,10 @@
 // tier: freestanding
 // SPDX-License-Identifier: MIT
 //
-// Sticks or slips, sample by sample, for whoever watches while the bow moves. A slip leads the string's surface against the way of the
-// rod, so it begins where the relative velocity lies more than a share of the rod's speed on that side, and is over where less
-// than half of that is left: hysteresis keeps one slip in one piece. slip_phases.hpp decides with more care, afterwards.
+// Sticks or slips, sample by sample, for whoever watches while the bow moves. A slip throws the string against the way of the rod, so
+// it begins where the string falls behind the rod by more than its speed and a little, and is over where it falls behind by
+// less than half of that: hysteresis keeps one slip in one piece. (The string's centre is what the reconstruction gives; while it
+// sticks, it still swings by rolling on the rod, by up to the rod's speed.) slip_phases.hpp decides with more care, afterwards.
 //
 #pragma once
 
@@ -17,7 +18,7 @@ template <class T>
 class slip_watch {
 public:
   /// rod_m_s: with its sign; 0: nothing can be said.
-  constexpr explicit slip_watch(T rod_m_s, T share = T(0.4)) noexcept : rod_{rod_m_s}, share_{share} {}
+  constexpr explicit slip_watch(T rod_m_s, T share = T(1.2)) noexcept : rod_{rod_m_s}, share_{share} {}
 
   /// The velocity of the string under the bow. NaN: unknown until the next number.
   constexpr contact_state operator()(T velocity_m_s) noexcept {

@@ -86,6 +86,7 @@ public:
     settings.c_cflag |= static_cast<tcflag_t>(CLOCAL | CREAD);
     if (::cfsetspeed(&settings, *speed) != 0 || ::tcsetattr(out.fd_.get(), TCSANOW, &settings) != 0)
       return failure{path + ": " + std::strerror(errno)};
+    ::tcflush(out.fd_.get(), TCIFLUSH);  // what came before anybody asked is old
     return out;
   }
 

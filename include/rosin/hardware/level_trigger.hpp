@@ -18,7 +18,7 @@ namespace rosin {
 struct trigger_settings {
   double threshold = 0;      ///< fraction of full scale; 0: triggered from the beginning
   double before_s = 0.1;     ///< what is kept of the time before
-  double follows_s = 0.05;   ///< time constant of the mean
+  double follows_s = 0.02;   ///< time constant of the mean
 };
 
 class level_trigger {

@@ -23,7 +23,7 @@ TEST_CASE("a Helmholtz motion with ripple: one slip a period, for both ways of t
 }
 
 TEST_CASE("what lies between the thresholds keeps the state; nothing is said without a number or a speed") {
-  rosin::slip_watch<float> watch{0.2F};
+  rosin::slip_watch<float> watch{0.2F, 0.4F};
   CHECK(watch.state() == contact_state::unknown);
   CHECK(watch(0.2F) == contact_state::sticking);
   CHECK(watch(0.14F) == contact_state::sticking);

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+//
+// rosin live: records, and shows what happens under the bow while it happens.
+//
+#include "commands.hpp"
+#include "live_chain.hpp"
+#include "recorder.hpp"
+#include "sled.hpp"
+
+#include <rosin/adapt/rig_toml.hpp>
+
+#include <iostream>
+#include <memory>
+
+namespace tool {
+
+namespace {
+
+struct options {
+  std::string rig, calibration, json_file;
+  input_options input;
+  recorder_options how;
+  sled_options stroke;
+  take_plan take;
+  live_options live;
+  bool no_take = false;
+};
+
+/// The take as it will be, and the rig with it; without a take, the rig as it is.
+rosin::outcome<rosin::rig> rig_of(const options& given, take_plan& take, std::optional<rig_file_writer>& files) {
+  if (given.no_take) return rosin::load_rig(given.rig, rosin::take_files::to_be_made);
+  auto opened = rig_file_writer::open(given.rig, "");
+  if (!opened) return rosin::failure{opened.error()};
+  files.emplace(*std::move(opened));
+  if (take.name.empty()) take.name = files->free_name(take.kind);
+  return files->with(take);
+}
+
+json memory_json(std::uint64_t before, std::uint64_t after) { return {{"resident_bytes_early", before}, {"resident_bytes_late", after}}; }
+
+/// What both the recorder and the sled have to be told.
+recorder_hooks hooks_of(live_chain& chain, std::optional<sled>& moves, std::uint64_t& early_bytes) {
+  recorder_hooks hooks;
+  hooks.frames = [&](std::span<const double> frames) { return chain.push(frames); };
+  if (moves) hooks.begun = [&] { moves->begin(); };
+  hooks.over = [&](double time_s) -> std::optional<std::string> {
+    if (early_bytes == 0 && time_s > 1) early_bytes = resident_bytes();
+    return moves ? moves->over() : std::nullopt;
+  };
+  hooks.shows = [&] { return chain.shows() + (moves ? "  " + moves->shows() : ""); };
+  return hooks;
+}
+
+exit_code run(const options& given) {
+  stop_on_signals();
+  const bool as_json = given.json_file == "-";
+  take_plan take = given.take;
+  std::optional<rig_file_writer> files;
+  const auto rig = rig_of(given, take, files);
+  if (!rig) return fail(rig.error(), as_json);
+  if (!given.json_file.empty())
+    if (const auto why = may_write_file(given.json_file, given.live.force)) return fail(why->message, as_json);
+  const auto calibration = read_calibration(given.calibration);
+  if (!calibration) return fail(calibration.error(), as_json);
+  auto input = open_input(given.input);
+  if (!input) return fail(input.error(), as_json);
+  for (const auto& c : rig->channels)
+    if (c.index >= input->format().channels) return fail(rig->file + ": channels." + c.name + ".index: the source has no such channel", as_json);
+  auto chain = live_chain::design(*rig, take, *calibration, input->format(), given.live);
+  if (!chain) return fail(chain.error(), as_json);
+  std::optional<sled> moves;
+  if (!given.stroke.device.empty()) {
+    auto opened = sled::open(given.stroke, take.speed_m_s.value_or(0));
+    if (!opened) return fail(opened.error(), as_json);
+    moves.emplace(*std::move(opened));
+  }
+  for (const auto& line : chain->remarks()) std::cerr << "rosin: " << line << '\n';
+  recorder from{*std::move(input), given.how};
+  std::uint64_t early_bytes = 0;
+  const take_report report = from.record(take, files ? &*files : nullptr, hooks_of(*chain, moves, early_bytes));
+  const std::uint64_t late_bytes = resident_bytes();
+  auto bad = chain->finish();
+  if (bad) std::cerr << "rosin: " << bad->message << '\n';
+  json out{{"schema", 1}, {"recording", to_json(report)}, {"reconstruction", chain->to_json()}, {"fullest_buffer", from.fullest_buffer()},
+           {"memory", memory_json(early_bytes, late_bytes)}};
+  if (!given.json_file.empty())
+    if (const auto why = save_json(given.json_file, out, given.live.force)) bad = why;
+  const bool lines_on_out = std::find(given.live.out.begin(), given.live.out.end(), "-") != given.live.out.end();
+  if (!as_json) (lines_on_out ? std::cerr : std::cout) << summary_of(report) << "\n  " << chain->summary() << std::endl;
+  return !bad && report.problems.empty() && report.frames > 0 ? exit_code::ok : exit_code::finding;
+}
+
+}  // namespace
+
+void add_live(CLI::App& app, exit_code& result) {
+  auto given = std::make_shared<options>();
+  CLI::App* command = app.add_subcommand("live", "Force and velocity under the bow while it moves, and the take besides");
+  command->add_option("RIG", given->rig, "Folder of the rig; the take joins its rig.toml")->required();
+  command->add_option("--calibration", given->calibration, "What `rosin fit --json` made of the plucks")->required()->type_name("FILE");
+  command->add_flag("--no-take", given->no_take, "Nothing is recorded");
+  add_input_options(*command, given->input);
+  add_live_options(*command, given->live);
+  add_take_options(*command, given->take);
+  add_recorder_options(*command, given->how);
+  add_sled_options(*command, given->stroke);
+  command->add_option("--json", given->json_file, "What was found, for a program; - for standard output")->type_name("FILE");
+  command->footer("Without a terminal nothing is shown. Exit status: 0 done; 1 done, but frames are missing or it broke off; 2 nothing was done.");
+  command->callback([given, &result] { result = run(*given); });
+}
+
+}  // namespace tool
