@@ -120,7 +120,7 @@ std::string coefficients(const rosin::passage_plan& plan, bool in_double) {
 
 std::string text_of(const header_design& d, const header_options& given, const calibration_set& set, const provenance& from) {
   const std::string type = given.in_double ? "double" : "float";
-  const std::size_t line = (d.plan.span() + 16 + 3) / 4 * 4;  // and a chunk, on whatever machine
+  const std::size_t line = (d.plan.span() + 3 + 16 + 3) / 4 * 4;  // and a chunk, on whatever machine
   std::string out = story(d, given, set, from);
   out += "#pragma once\n\n#include <rosin/reconstruct/passage_reconstructor.hpp>\n\nnamespace " + given.space + " {\n\n";
   out += "using sample = " + type + ";\n";

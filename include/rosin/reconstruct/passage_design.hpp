@@ -34,13 +34,13 @@ struct passage_plan {
   [[nodiscard]] int reach_ahead() const noexcept { return half_length() + extreme([](const fir& k) { return -k.first; }); }
   [[nodiscard]] int reach_back() const noexcept { return half_length() + extreme([](const fir& k) { return k.last(); }); }
   [[nodiscard]] int half_length() const noexcept { return static_cast<int>(admittance.size()) - 1; }
-  /// Taps of the longest passage, and frames that one output depends on; with what the run-time part pads them by.
+  /// Taps of the longest passage, rounded up to a multiple of 4, and frames that one output depends on.
   [[nodiscard]] std::size_t longest() const noexcept {
     std::size_t n = 0;
     for (const fir& k : passage) n = std::max(n, k.taps.size());
     return (n + 3) / 4 * 4;
   }
-  [[nodiscard]] std::size_t span() const noexcept { return static_cast<std::size_t>(reach_ahead() + reach_back()) + 1 + 2 * 3; }
+  [[nodiscard]] std::size_t span() const noexcept { return static_cast<std::size_t>(reach_ahead() + reach_back()) + 1; }
 
   /// A passage as the run-time part wants it: oldest sample first, zeros before it up to a multiple of 4.
   [[nodiscard]] std::vector<double> arrival_taps(std::size_t p) const {
@@ -176,7 +176,7 @@ template <class Physics = full_physics>
 /// Into fixed size. Fails where Taps, Line or Short do not hold the plan.
 template <class T, std::size_t Taps, std::size_t Line, std::size_t Short>
 [[nodiscard]] outcome<passage_coefficients<T, Taps, Short>> fixed_size(const passage_plan& plan) {
-  const std::size_t longest = plan.longest(), half = plan.admittance.size() - 1, span = plan.span(), chunk = detail::passage_chunk<T>;
+  const std::size_t longest = plan.longest(), half = plan.admittance.size() - 1, span = plan.span() + 3, chunk = detail::passage_chunk<T>;
   if (longest > Taps) return failure{"a passage needs " + std::to_string(longest) + " taps, there is room for " + std::to_string(Taps)};
   if (half != Short) return failure{"the short filters have half-length " + std::to_string(half) + ", not " + std::to_string(Short)};
   if (span + chunk > Line)
@@ -185,7 +185,7 @@ template <class T, std::size_t Taps, std::size_t Line, std::size_t Short>
   const auto to = [](double tap) { return static_cast<T>(tap); };
   out.version = plan.version;
   out.latency = static_cast<std::size_t>(plan.reach_ahead());
-  out.reach = span;
+  out.reach = plan.span();
   const std::vector<double> admittance = plan.arrival_admittance(), near_field = plan.arrival_near_field();
   std::transform(admittance.begin(), admittance.end(), out.admittance.begin(), to);
   std::transform(near_field.begin(), near_field.end(), out.near_field.begin(), to);

@@ -21,12 +21,14 @@
 #include <rosin/math/lanes.hpp>
 #include <rosin/reconstruct/streaming_reconstructor.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
 #include <limits>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 namespace rosin {
 
@@ -94,38 +96,57 @@ template <class Vector, class T>
   }
 }
 
-/// Adds a[j] b[j] to the lanes of `sum`.
-template <class Vector, class T>
-void add_product(Vector& sum, const T* a, const T* b) noexcept {
-  sum += load_lanes<Vector>(a) * load_lanes<Vector>(b);
+/// Taps of one frame's sums are padded to a multiple of this, so that no register is left half full.
+template <class T>
+inline constexpr std::size_t passage_quantum = register_lanes<T> < 4 ? 4 : register_lanes<T>;
+
+/// The sum of a register's lanes.
+template <class T, std::size_t Count>
+[[nodiscard]] T sum_of_lanes(const typename lanes_of<T, Count>::type& v) noexcept {
+  if constexpr (Count == 1) return v;
+  else if constexpr (Count == 2) return v[0] + v[1];
+  else {
+    using half = typename lanes_of<T, Count / 2>::type;
+    const auto [low, high] = [&]<std::size_t... I>(std::index_sequence<I...>) {
+      return std::array<half, 2>{__builtin_shufflevector(v, v, I...), __builtin_shufflevector(v, v, (I + Count / 2)...)};
+    }(std::make_index_sequence<Count / 2>{});
+    return sum_of_lanes<T, Count / 2>(low + high);
+  }
 }
 
-/// sum_j taps[j] x[j]; count is a multiple of 4.
+/// sum_j taps[j] x[j]; count is a multiple of passage_quantum.
 template <class T>
 [[nodiscard]] T passage_dot(const T* taps, const T* x, std::size_t count) noexcept {
-  constexpr std::size_t narrow = register_lanes<T> < 4 ? register_lanes<T> : 4, wide = register_lanes<T> < 8 ? narrow : 8;
-  using vector = typename lanes_of<T, wide>::type;
-  vector even{}, odd{};
+  constexpr std::size_t width = register_lanes<T>, sums = width == 1 ? 4 : 2, step = sums * width;
+  using vector = typename lanes_of<T, width>::type;
+  std::array<vector, sums> sum{};
   std::size_t j = 0;
-  if constexpr (wide > narrow)
-    for (; j + 2 * wide <= count; j += 2 * wide) {
-      add_product(even, taps + j, x + j);
-      add_product(odd, taps + j + wide, x + j + wide);
-    }
-  even += odd;
-  std::array<typename lanes_of<T, narrow>::type, 4 / narrow * (wide / narrow)> sum;
-  if constexpr (wide > narrow) std::memcpy(sum.data(), &even, sizeof even);
-  else sum = {};
-  for (; j < count; j += 4)
+  for (; j + step <= count; j += step)
 #pragma GCC unroll 4
-    for (std::size_t p = 0; p < 4 / narrow; ++p) add_product(sum[p], taps + j + p * narrow, x + j + p * narrow);
-  if constexpr (sum.size() > 1) sum[0] += sum[1];
-  if constexpr (sum.size() > 2) sum[0] += sum[2] + sum[3];
-  std::array<T, narrow> lane;
-  std::memcpy(lane.data(), sum.data(), sizeof lane);
-  if constexpr (narrow == 4) return (lane[0] + lane[1]) + (lane[2] + lane[3]);
-  else if constexpr (narrow == 2) return lane[0] + lane[1];
-  else return lane[0];
+    for (std::size_t p = 0; p < sums; ++p) sum[p] += load_lanes<vector>(taps + j + p * width) * load_lanes<vector>(x + j + p * width);
+  if (j < count) sum[0] += load_lanes<vector>(taps + j) * load_lanes<vector>(x + j);
+  if constexpr (sums == 4) return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  else return sum_of_lanes<T, width>(sum[0] + sum[1]);
+}
+
+/// Moves a window of `count` samples on by one, `newest` behind them, and shows use(j, register) what is in it from j on.
+template <class T, class Use>
+void shift_in(T* window, std::size_t count, T newest, Use use) noexcept {
+  constexpr std::size_t width = register_lanes<T>;
+  using vector = typename lanes_of<T, width>::type;
+  vector now = load_lanes<vector>(window);
+  for (std::size_t j = 0; j < count; j += width) {
+    vector next{};
+    if (j + width < count) next = load_lanes<vector>(window + j + width);
+    else if constexpr (width == 1) next = newest;
+    else next[0] = newest;
+    if constexpr (width == 1) now = next;
+    else
+      now = [&]<std::size_t... I>(std::index_sequence<I...>) { return __builtin_shufflevector(now, next, (I + 1)...); }(std::make_index_sequence<width>{});
+    std::memcpy(window + j, &now, sizeof now);
+    use(j, now);
+    now = next;
+  }
 }
 
 /// The same for x, x + 1, ...: a chunk of outputs at once, each tap fetched once.
@@ -163,17 +184,26 @@ public:
   static constexpr std::size_t chunk = detail::passage_chunk<T>;
   static_assert(Taps % 4 == 0, "kernels are run four taps at a time");
 
-  constexpr explicit passage_reconstructor(const coefficients_type& coefficients) noexcept : c_{coefficients} {}
+  constexpr explicit passage_reconstructor(const coefficients_type& c) noexcept
+      : admittance_{padded<short_room>(c.admittance, short_taps)}, near_field_{padded<short_room>(c.near_field, short_taps)},
+        latency_{c.latency}, reach_{c.reach}, version_{c.version} {
+    for (std::size_t p = 0; p < 4; ++p) passage_[p] = passage(c.passage[p]);
+  }
 
-  /// Total on any input. What rests on a NaN, an infinity or on frames before the first is NaN, never made up.
+  /// Total on any input. What rests on a NaN, an infinity (or what is on the way to one, above 1e26 N in float) or on frames
+  /// before the first is NaN, never made up.
   output_type operator()(const input_type& frame) noexcept {
-    const T zero = (frame.near_N - frame.near_N) + (frame.far_N - frame.far_N);  // NaN where one is not finite
-    finite_ = zero == T(0) ? finite_ + (known() ? 0 : 1) : 0;
-    lines_.push(std::array<std::array<T, 1>, 2>{{{frame.near_N}, {frame.far_N}}});
+    const bool sound = strangeness(frame) == T(0);
+    finite_ = sound ? finite_ + (known() ? 0 : 1) : 0;
+    lines_.push(std::array<std::array<T, 1>, 2>{{{sound ? frame.near_N : T(0)}, {sound ? frame.far_N : T(0)}}});
     std::array<std::array<T, 1>, 4> wave;
-    for (std::size_t p = 0; p < 4; ++p) wave[p][0] = detail::passage_dot(taps(p), samples(p, 0), c_.passage[p].count);
-    mix(wave);
-    return known() ? latest() : unknown();
+    for (std::size_t p = 0; p < 4; ++p) {  // the newest sample apart: a register that holds it would wait for it
+      const std::size_t older = passage_[p].older;
+      const T* x = samples(p, older);
+      wave[p][0] = detail::passage_dot(passage_[p].taps.data(), x, older) + passage_[p].taps[older] * x[older];
+    }
+    const output_type latest = moved_on(mixed(wave));
+    return known() ? latest : unknown();
   }
 
   /// The same frame by frame, quicker from `chunk` frames on. Both spans have one length.
@@ -181,7 +211,7 @@ public:
     std::size_t n = 0;
     while (n < in.size()) {
       const std::size_t count = in.size() - n < chunk ? in.size() - n : chunk;
-      if (count == chunk && known() && all_finite(in.data() + n)) run_chunk(in.data() + n, out.data() + n);
+      if (count == chunk && known() && all_sound(in.data() + n)) run_chunk(in.data() + n, out.data() + n);
       else
         for (std::size_t i = n; i < n + count; ++i) out[i] = (*this)(in[i]);
       n += count;
@@ -190,16 +220,17 @@ public:
 
   /// The latest output rests on finite samples only, and on as many as it needs: false at the beginning, and after a NaN or an
   /// infinity until it has left the lines.
-  [[nodiscard]] bool known() const noexcept { return finite_ >= c_.reach; }
+  [[nodiscard]] bool known() const noexcept { return finite_ >= reach_; }
 
   void reset() noexcept {
     lines_ = {};
-    mixed_ = {};
+    forces_ = {};
+    window_ = {};
     finite_ = 0;
   }
 
   /// Frames by which the output lags.
-  [[nodiscard]] T latency() const noexcept { return static_cast<T>(c_.latency); }
+  [[nodiscard]] T latency() const noexcept { return static_cast<T>(latency_); }
 
 private:
   enum signal : std::size_t { force_near, force_far, round_near, round_far, force, signals };
@@ -210,27 +241,56 @@ private:
     constexpr T nan = std::numeric_limits<T>::quiet_NaN();
     return {nan, nan, nan, nan};
   }
-  static bool all_finite(const input_type* in) noexcept {
-    T zero = 0;
-    for (std::size_t i = 0; i < chunk; ++i) zero += (in[i].near_N - in[i].near_N) + (in[i].far_N - in[i].far_N);
-    return zero == T(0);
+  /// Zero, but for a frame that is not finite or too large to be summed up. (2^40 x is exact unless it overflows.)
+  static constexpr T strangeness(const input_type& frame) noexcept {
+    constexpr T headroom = T(1ULL << 40U);
+    return (frame.near_N * headroom - frame.near_N * headroom) + (frame.far_N * headroom - frame.far_N * headroom);
   }
-  [[nodiscard]] const T* taps(std::size_t passage) const noexcept { return c_.passage[passage].taps.data(); }
-  /// The oldest sample under a passage's taps, as of `ago` frames before the latest.
-  [[nodiscard]] const T* samples(std::size_t passage, std::size_t ago) const noexcept {
-    const auto& k = c_.passage[passage];
-    return lines_.at(passage / 2, k.newest_age + k.count + ago - (k.count > 0 ? 1 : 0));
+  static bool all_sound(const input_type* in) noexcept {
+    T sum = 0;
+    for (std::size_t i = 0; i < chunk; ++i) sum += strangeness(in[i]);
+    return sum == T(0);
   }
 
-  static constexpr std::size_t short_taps = coefficients_type::short_taps;
+  static constexpr std::size_t quantum = detail::passage_quantum<T>;
+  static constexpr std::size_t up(std::size_t count) noexcept { return (count + quantum - 1) / quantum * quantum; }
+  static constexpr std::size_t short_taps = coefficients_type::short_taps, short_room = up(short_taps);
 
-  [[nodiscard]] output_type latest() const noexcept {
-    const auto dot = [&](const std::array<T, short_taps>& taps, signal s) {
-      return detail::passage_dot(taps.data(), mixed_.at(s, short_taps - 1), short_taps);
-    };
-    const T near_field = dot(c_.near_field, force);
-    return {*mixed_.at(force_near, Short), *mixed_.at(force_far, Short), dot(c_.admittance, round_near) + near_field,
-            dot(c_.admittance, round_far) + near_field};
+  /// The same taps at the end of a longer array.
+  template <std::size_t Room, std::size_t Count>
+  static constexpr std::array<T, Room> padded(const std::array<T, Count>& taps, std::size_t count) noexcept {
+    std::array<T, Room> out{};
+    for (std::size_t j = 0; j < count; ++j) out[up(count) - count + j] = taps[j];
+    return out;
+  }
+  /// The taps but the newest, padded, and the newest.
+  struct passage {
+    std::array<T, up(Taps) + 1> taps{};
+    std::size_t older = 0, count = 0, newest_age = 0;
+
+    constexpr passage() noexcept = default;
+    constexpr explicit passage(const streaming_kernel<T, Taps>& k) noexcept : count{k.count}, newest_age{k.newest_age} {
+      if (count == 0) return;
+      older = up(count - 1);
+      for (std::size_t j = 0; j < count; ++j) taps[older + 1 - count + j] = k.taps[j];
+    }
+    [[nodiscard]] const T* oldest() const noexcept { return taps.data() + (older + 1 - count); }
+  };
+  /// The sample under a passage's taps that is `before` frames older than the newest of them.
+  [[nodiscard]] const T* samples(std::size_t p, std::size_t before) const noexcept {
+    return lines_.at(p / 2, passage_[p].newest_age + (passage_[p].count > 0 ? before : 0));
+  }
+
+  /// Takes one frame into the windows and gives what is in their middle. They move within registers, and are stored as they are loaded.
+  output_type moved_on(const std::array<std::array<T, 1>, signals>& m) noexcept {
+    forces_.push(std::array<std::array<T, 1>, 2>{{m[force_near], m[force_far]}});
+    using vector = typename lanes_of<T, register_lanes<T>>::type;
+    vector near{}, far{}, near_field{};
+    detail::shift_in<T>(window_[0].data(), short_room, m[round_near][0], [&](std::size_t j, const vector& x) { near += detail::load_lanes<vector>(&admittance_[j]) * x; });
+    detail::shift_in<T>(window_[1].data(), short_room, m[round_far][0], [&](std::size_t j, const vector& x) { far += detail::load_lanes<vector>(&admittance_[j]) * x; });
+    detail::shift_in<T>(window_[2].data(), short_room, m[force][0], [&](std::size_t j, const vector& x) { near_field += detail::load_lanes<vector>(&near_field_[j]) * x; });
+    constexpr std::size_t width = register_lanes<T>;
+    return {*forces_.at(0, Short), *forces_.at(1, Short), detail::sum_of_lanes<T, width>(near + near_field), detail::sum_of_lanes<T, width>(far + near_field)};
   }
 
   void run_chunk(const input_type* in, output_type* out) noexcept {
@@ -239,15 +299,14 @@ private:
     lines_.push(forces);
     std::array<row, 4> wave;
     for (std::size_t p = 0; p < 4; ++p)
-      detail::passage_fir(taps(p), samples(p, chunk - 1), c_.passage[p].count, wave[p].data());
-    mix(wave);
-    put_chunk(out);
+      detail::passage_fir(passage_[p].oldest(), samples(p, passage_[p].count + chunk - 2), passage_[p].count, wave[p].data());
+    put_chunk(mixed(wave), out);
   }
 
   template <std::size_t Count>
-  void mix(const std::array<std::array<T, Count>, 4>& wave) noexcept {
+  [[nodiscard]] std::array<std::array<T, Count>, signals> mixed(const std::array<std::array<T, Count>, 4>& wave) const noexcept {
     std::array<std::array<T, Count>, signals> out;
-    const bool near_only = c_.version == bow_version::near, far_only = c_.version == bow_version::far;
+    const bool near_only = version_ == bow_version::near, far_only = version_ == bow_version::far;
     for (std::size_t i = 0; i < Count; ++i) {
       const T near = wave[0][i] + wave[3][i], far = wave[2][i] + wave[1][i];
       const T trip_near = wave[0][i] - wave[1][i], trip_far = wave[2][i] - wave[3][i];
@@ -257,25 +316,33 @@ private:
       out[round_far][i] = near_only ? trip_near : trip_far;
       out[force][i] = (out[force_near][i] + out[force_far][i]) / T(2);
     }
-    mixed_.push(out);
+    return out;
   }
 
-  /// latest(), for each frame of a chunk.
-  void put_chunk(output_type* out) const noexcept {
-    const auto fir = [&](const std::array<T, short_taps>& taps, signal s, row& to) {
-      detail::passage_fir(taps.data(), mixed_.at(s, short_taps + chunk - 2), short_taps, to.data());
-    };
+  /// moved_on(), for each frame of a chunk.
+  void put_chunk(const std::array<row, signals>& m, output_type* out) noexcept {
+    forces_.push(std::array<row, 2>{m[force_near], m[force_far]});
     row near, far, near_field;
-    fir(c_.admittance, round_near, near);
-    fir(c_.admittance, round_far, far);
-    fir(c_.near_field, force, near_field);
-    const T *force_n = mixed_.at(force_near, Short + chunk - 1), *force_f = mixed_.at(force_far, Short + chunk - 1);
+    through_window(admittance_, 0, m[round_near], near);
+    through_window(admittance_, 1, m[round_far], far);
+    through_window(near_field_, 2, m[force], near_field);
+    const T *force_n = forces_.at(0, Short + chunk - 1), *force_f = forces_.at(1, Short + chunk - 1);
     for (std::size_t i = 0; i < chunk; ++i) out[i] = {force_n[i], force_f[i], near[i] + near_field[i], far[i] + near_field[i]};
   }
+  void through_window(const std::array<T, short_room>& taps, std::size_t which, const row& in, row& out) noexcept {
+    auto& w = window_[which];
+    std::copy(in.begin(), in.end(), w.begin() + short_room);
+    detail::passage_fir(taps.data() + short_room - short_taps, w.data() + short_room - short_taps + 1, short_taps, out.data());
+    std::copy(w.begin() + chunk, w.end(), w.begin());
+  }
 
-  coefficients_type c_;
-  doubled_lines<T, 2, Line> lines_;
-  doubled_lines<T, signals, short_taps + 4 * chunk> mixed_;
+  std::array<passage, 4> passage_;
+  std::array<T, short_room> admittance_, near_field_;
+  std::size_t latency_, reach_;
+  bow_version version_;
+  doubled_lines<T, 2, Line + quantum> lines_;
+  doubled_lines<T, 2, Short + 5 * chunk> forces_;                     ///< under the bow, until the velocities are there
+  std::array<std::array<T, short_room + chunk>, 3> window_{};        ///< of the short filters, oldest first; room for a chunk
   std::size_t finite_ = 0;
 };
 
