@@ -50,17 +50,45 @@ struct calibration {
   }
 };
 
-/// Reads a calibration out of a fit of plucks, for the fitted position whose declared value is nearest to `declared`.
-/// impedance_Ns_m and its relative sd come from the rig: forces alone cannot tell them.
-[[nodiscard]] inline calibration calibration_from(const pluck_fit_result& fit, double declared, double impedance_Ns_m,
-                                                  double impedance_relative_sd, std::array<double, 2> ac_coupled_Hz = {}) {
-  using layout = pluck_layout;
+namespace detail {
+
+/// The take whose declared position is nearest.
+[[nodiscard]] inline std::size_t take_nearest(const pluck_fit_result& fit, double declared) {
   std::size_t take = 0;
   for (std::size_t t = 1; t < fit.layout.takes(); ++t) {
     const auto apart = [&](std::size_t i) { return std::abs(fit.value[fit.layout.position(i)] - declared); };
     if (apart(t) < apart(take)) take = t;
   }
-  const Eigen::Index at = fit.layout.position(take);
+  return take;
+}
+
+}  // namespace detail
+
+/// Waveform parameters by fitted parameters: 6 x size of the layout, for the position nearest to `declared`.
+[[nodiscard]] inline Eigen::MatrixXd waveform_jacobian(const pluck_fit_result& fit, double declared) {
+  using layout = pluck_layout;
+  const Eigen::Index at = fit.layout.position(detail::take_nearest(fit, declared));
+  const double f0 = fit.value[layout::fundamental], p = fit.value[at], one_way = 0.5 / f0;
+  Eigen::MatrixXd to = Eigen::MatrixXd::Zero(waveform_parameters, fit.layout.size());
+  to(0, at) = one_way;
+  to(0, layout::fundamental) = -p * one_way / f0;
+  to(1, at) = -one_way;
+  to(1, layout::fundamental) = -(1 - p) * one_way / f0;
+  to(2, layout::inharmonicity) = std::pow(2 * std::numbers::pi * f0, -2);
+  to(2, layout::fundamental) = -2 * fit.string().stiffness_s2() / f0;
+  to(3, layout::inverse_quality) = 1;
+  to(4, layout::internal_loss) = 1;
+  to(5, layout::gain_near) = 1;
+  to(5, layout::gain_far) = -1;
+  return to;
+}
+
+/// Reads a calibration out of a fit of plucks, for the fitted position whose declared value is nearest to `declared`.
+/// impedance_Ns_m and its relative sd come from the rig: forces alone cannot tell them.
+[[nodiscard]] inline calibration calibration_from(const pluck_fit_result& fit, double declared, double impedance_Ns_m,
+                                                  double impedance_relative_sd, std::array<double, 2> ac_coupled_Hz = {}) {
+  using layout = pluck_layout;
+  const Eigen::Index at = fit.layout.position(detail::take_nearest(fit, declared));
   const double f0 = fit.value[layout::fundamental], p = fit.value[at];
   const ringing_string string = fit.string();
 
@@ -72,17 +100,7 @@ struct calibration {
   c.ac_coupled_Hz = ac_coupled_Hz;
   c.impedance_relative_sd = impedance_relative_sd;
 
-  Eigen::MatrixXd to = Eigen::MatrixXd::Zero(waveform_parameters, fit.layout.size());
-  to(0, at) = 0.5 / f0;
-  to(0, layout::fundamental) = -c.at.delay_s[0] / f0;
-  to(1, at) = -0.5 / f0;
-  to(1, layout::fundamental) = -c.at.delay_s[1] / f0;
-  to(2, layout::inharmonicity) = std::pow(2 * std::numbers::pi * f0, -2);
-  to(2, layout::fundamental) = -2 * c.at.stiffness_s2 / f0;
-  to(3, layout::inverse_quality) = 1;
-  to(4, layout::internal_loss) = 1;
-  to(5, layout::gain_near) = 1;
-  to(5, layout::gain_far) = -1;
+  const Eigen::MatrixXd to = waveform_jacobian(fit, declared);
   c.covariance = to * fit.covariance * to.transpose();
   Eigen::VectorXd common = Eigen::VectorXd::Zero(fit.layout.size());
   common[layout::gain_near] = common[layout::gain_far] = 0.5;
