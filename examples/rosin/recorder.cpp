@@ -229,7 +229,7 @@ std::string summary_of(const take_report& r) {
 
 void stop_on_signals() {
   for (const int s : {SIGINT, SIGTERM}) std::signal(s, [](int) { stop_asked = true; });
-  std::signal(SIGPIPE, SIG_IGN);
+  for (const int s : {SIGPIPE, SIGXFSZ}) std::signal(s, SIG_IGN);  // write() says it
 }
 bool stopped() noexcept { return stop_asked; }
 
