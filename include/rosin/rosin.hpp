@@ -93,6 +93,7 @@
 #include <rosin/reconstruct/fine_tune.hpp>
 #include <rosin/reconstruct/passage_design.hpp>
 #include <rosin/reconstruct/passage_reconstructor.hpp>
+#include <rosin/reconstruct/passage_sums.hpp>
 #include <rosin/reconstruct/periodic_part.hpp>
 #include <rosin/reconstruct/periodic_reconstruction.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>

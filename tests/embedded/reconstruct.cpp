@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/propagate/bow_point.hpp>
 #include <rosin/reconstruct/passage_reconstructor.hpp>
+#include <rosin/reconstruct/passage_sums.hpp>
 #include <rosin/reconstruct/streaming_reconstructor.hpp>
 
 // Instantiated, not run: the symbols it leaves undefined are the test.

@@ -19,16 +19,14 @@
 #pragma once
 
 #include <rosin/math/lanes.hpp>
+#include <rosin/reconstruct/passage_sums.hpp>
 #include <rosin/reconstruct/streaming_reconstructor.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 #include <span>
-#include <type_traits>
-#include <utility>
 
 namespace rosin {
 
@@ -46,132 +44,6 @@ struct passage_coefficients {
   std::size_t reach = 0;                                        ///< frames that one output depends on
   bow_version version = bow_version::both;
 };
-
-/// The latest Length frames of some signals; each is kept twice in a row, so that a stretch of it never wraps.
-template <class T, std::size_t Signals, std::size_t Length>
-class doubled_lines {
-public:
-  template <std::size_t Count>
-  constexpr void push(const std::array<std::array<T, Count>, Signals>& frames) noexcept {
-    const std::size_t start = head_ + 1;
-    if (start + Count <= Length)
-      for (std::size_t s = 0; s < Signals; ++s) copy(frames[s], line_[s].data() + start);
-    else
-      for (std::size_t i = 0, at = start; i < Count; ++i, ++at)
-        for (std::size_t s = 0; s < Signals; ++s) {
-          at = at >= Length ? 0 : at;
-          line_[s][at] = line_[s][at + Length] = frames[s][i];
-        }
-    head_ = start + Count <= Length ? head_ + Count : head_ + Count - Length;
-  }
-  /// The sample that is `age` frames old, < Length; those after it follow.
-  [[nodiscard]] constexpr const T* at(std::size_t signal, std::size_t age) const noexcept {
-    return line_[signal].data() + head_ + Length - age;
-  }
-
-private:
-  template <std::size_t Count>
-  static constexpr void copy(const std::array<T, Count>& from, T* to) noexcept {
-#pragma GCC unroll 16
-    for (std::size_t i = 0; i < Count; ++i) to[i] = to[i + Length] = from[i];
-  }
-
-  std::array<std::array<T, 2 * Length>, Signals> line_{};
-  std::size_t head_ = 0;
-};
-
-namespace detail {
-
-/// Outputs of one run over the taps: what the registers hold, four sums at least.
-template <class T>
-inline constexpr std::size_t passage_chunk = register_lanes<T> < 4 ? 8 : 16;
-
-template <class Vector, class T>
-[[nodiscard]] Vector load_lanes(const T* from) noexcept {
-  if constexpr (std::is_same_v<Vector, T>) return *from;
-  else {
-    Vector x;
-    std::memcpy(&x, from, sizeof x);
-    return x;
-  }
-}
-
-/// Taps of one frame's sums are padded to a multiple of this, so that no register is left half full.
-template <class T>
-inline constexpr std::size_t passage_quantum = register_lanes<T> < 4 ? 4 : register_lanes<T>;
-
-/// The sum of a register's lanes.
-template <class T, std::size_t Count>
-[[nodiscard]] T sum_of_lanes(const typename lanes_of<T, Count>::type& v) noexcept {
-  if constexpr (Count == 1) return v;
-  else if constexpr (Count == 2) return v[0] + v[1];
-  else {
-    using half = typename lanes_of<T, Count / 2>::type;
-    const auto [low, high] = [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return std::array<half, 2>{__builtin_shufflevector(v, v, I...), __builtin_shufflevector(v, v, (I + Count / 2)...)};
-    }(std::make_index_sequence<Count / 2>{});
-    return sum_of_lanes<T, Count / 2>(low + high);
-  }
-}
-
-/// sum_j taps[j] x[j]; count is a multiple of passage_quantum.
-template <class T>
-[[nodiscard]] T passage_dot(const T* taps, const T* x, std::size_t count) noexcept {
-  constexpr std::size_t width = register_lanes<T>, sums = width == 1 ? 4 : 2, step = sums * width;
-  using vector = typename lanes_of<T, width>::type;
-  std::array<vector, sums> sum{};
-  std::size_t j = 0;
-  for (; j + step <= count; j += step)
-#pragma GCC unroll 4
-    for (std::size_t p = 0; p < sums; ++p) sum[p] += load_lanes<vector>(taps + j + p * width) * load_lanes<vector>(x + j + p * width);
-  if (j < count) sum[0] += load_lanes<vector>(taps + j) * load_lanes<vector>(x + j);
-  if constexpr (sums == 4) return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-  else return sum_of_lanes<T, width>(sum[0] + sum[1]);
-}
-
-/// Moves a window of `count` samples on by one, `newest` behind them, and shows use(j, register) what is in it from j on.
-template <class T, class Use>
-void shift_in(T* window, std::size_t count, T newest, Use use) noexcept {
-  constexpr std::size_t width = register_lanes<T>;
-  using vector = typename lanes_of<T, width>::type;
-  vector now = load_lanes<vector>(window);
-  for (std::size_t j = 0; j < count; j += width) {
-    vector next{};
-    if (j + width < count) next = load_lanes<vector>(window + j + width);
-    else if constexpr (width == 1) next = newest;
-    else next[0] = newest;
-    if constexpr (width == 1) now = next;
-    else
-      now = [&]<std::size_t... I>(std::index_sequence<I...>) { return __builtin_shufflevector(now, next, (I + 1)...); }(std::make_index_sequence<width>{});
-    std::memcpy(window + j, &now, sizeof now);
-    use(j, now);
-    now = next;
-  }
-}
-
-/// The same for x, x + 1, ...: a chunk of outputs at once, each tap fetched once.
-template <class T>
-void passage_fir(const T* taps, const T* x, std::size_t count, T* out) noexcept {
-  constexpr std::size_t width = register_lanes<T> < passage_chunk<T> ? register_lanes<T> : passage_chunk<T>;
-  constexpr std::size_t parts = passage_chunk<T> / width, sets = parts >= 4 ? 1 : 4 / parts;
-  using vector = typename lanes_of<T, width>::type;
-  std::array<std::array<vector, parts>, sets> sum;
-#pragma GCC unroll 4
-  for (std::size_t s = 0; s < sets; ++s)
-#pragma GCC unroll 16
-    for (std::size_t p = 0; p < parts; ++p) sum[s][p] = vector{};
-  for (std::size_t j = 0; j < count; j += 4)
-#pragma GCC unroll 4
-    for (std::size_t t = 0; t < 4; ++t)
-#pragma GCC unroll 16
-      for (std::size_t p = 0; p < parts; ++p) sum[t % sets][p] += taps[j + t] * load_lanes<vector>(x + j + t + p * width);
-  for (std::size_t s = 1; s < sets; ++s)
-    for (std::size_t p = 0; p < parts; ++p) sum[0][p] += sum[s][p];
-#pragma GCC unroll 16
-  for (std::size_t p = 0; p < parts; ++p) std::memcpy(out + p * width, &sum[0][p], sizeof(vector));
-}
-
-}  // namespace detail
 
 /// T: float or double. Taps: longest passage, a multiple of 4. Line: length of the delay lines. Short: half-length of y and n.
 template <class T, std::size_t Taps, std::size_t Line, std::size_t Short>
@@ -196,12 +68,16 @@ public:
     const bool sound = strangeness(frame) == T(0);
     finite_ = sound ? finite_ + (known() ? 0 : 1) : 0;
     lines_.push(std::array<std::array<T, 1>, 2>{{{sound ? frame.near_N : T(0)}, {sound ? frame.far_N : T(0)}}});
+    std::array<typename lanes_of<T, register_lanes<T>>::type, 4> sum;
     std::array<std::array<T, 1>, 4> wave;
     for (std::size_t p = 0; p < 4; ++p) {  // the newest sample apart: a register that holds it would wait for it
       const std::size_t older = passage_[p].older;
       const T* x = samples(p, older);
-      wave[p][0] = detail::passage_dot(passage_[p].taps.data(), x, older) + passage_[p].taps[older] * x[older];
+      sum[p] = detail::passage_dot(passage_[p].taps.data(), x, older);
+      wave[p][0] = passage_[p].taps[older] * x[older];
     }
+    const std::array<T, 4> older = detail::four_sums_of_lanes<T, register_lanes<T>>(sum);
+    for (std::size_t p = 0; p < 4; ++p) wave[p][0] += older[p];
     const output_type latest = moved_on(mixed(wave));
     return known() ? latest : unknown();
   }
@@ -286,9 +162,13 @@ private:
     forces_.push(std::array<std::array<T, 1>, 2>{{m[force_near], m[force_far]}});
     using vector = typename lanes_of<T, register_lanes<T>>::type;
     vector near{}, far{}, near_field{};
-    detail::shift_in<T>(window_[0].data(), short_room, m[round_near][0], [&](std::size_t j, const vector& x) { near += detail::load_lanes<vector>(&admittance_[j]) * x; });
-    detail::shift_in<T>(window_[1].data(), short_room, m[round_far][0], [&](std::size_t j, const vector& x) { far += detail::load_lanes<vector>(&admittance_[j]) * x; });
-    detail::shift_in<T>(window_[2].data(), short_room, m[force][0], [&](std::size_t j, const vector& x) { near_field += detail::load_lanes<vector>(&near_field_[j]) * x; });
+    const auto through = [&](std::size_t which, signal from, const std::array<T, short_room>& taps, vector& sum) {
+      detail::shift_in<T>(window_[which].data(), short_room, m[from][0],
+                          [&](std::size_t j, const vector& x) { sum += detail::load_lanes<vector>(&taps[j]) * x; });
+    };
+    through(0, round_near, admittance_, near);
+    through(1, round_far, admittance_, far);
+    through(2, force, near_field_, near_field);
     constexpr std::size_t width = register_lanes<T>;
     return {*forces_.at(0, Short), *forces_.at(1, Short), detail::sum_of_lanes<T, width>(near + near_field), detail::sum_of_lanes<T, width>(far + near_field)};
   }
