@@ -61,6 +61,22 @@ json channel_json(const rig_calibration& c, std::size_t channel) {
           {"ac_coupled_Hz", number(c.ac_coupled_Hz[channel])}};
 }
 
+/// Modes that were fitted; masses in kg where Z is known.
+json ends_json(const rig_calibration& c) {
+  json out{{"near", json::array()}, {"far", json::array()}, {"fitted", json::array()}, {"parameters", json::array()}, {"covariance", matrix(c.ends.covariance)}};
+  for (std::size_t e = 0; e < 2; ++e)
+    if (c.ends.fitted[e]) out["fitted"].push_back(e == 0 ? "near" : "far");
+  for (const auto& m : c.ends.modes) {
+    const std::string name = m.end == 0 ? "near" : "far";
+    json one{{"frequency_Hz", with_sd(m.mode.frequency_Hz, m.frequency_sd_Hz)}, {"q", with_sd(m.mode.q, m.q_sd)},
+             {"impedance_per_mass_per_s", with_sd(m.mode.per_mass_per_s, m.mode.per_mass_per_s * m.per_mass_relative_sd)}, {"end_uncertain", m.end_uncertain}};
+    if (c.impedance_Ns_m) one["mass_kg"] = with_sd(c.impedance_Ns_m->value / m.mode.per_mass_per_s, c.impedance_Ns_m->value / m.mode.per_mass_per_s * m.per_mass_relative_sd);
+    out[name].push_back(one);
+    for (const char* parameter : {"ln_frequency", "ln_q", "ln_impedance_per_mass"}) out["parameters"].push_back(std::string(parameter) + " of " + name + " " + std::to_string(out[name].size()));
+  }
+  return out;
+}
+
 json position_json(const rig_calibration& c, std::size_t i) {
   const rosin::calibration& at = c.at[i];
   return {{"declared", c.declared[i]},
@@ -102,12 +118,41 @@ json fit_json(const rig_calibration& c) {
           {"unidentified", c.fit.unidentified}};
 }
 
+Eigen::MatrixXd matrix_of(const json& rows) {
+  const auto n = static_cast<Eigen::Index>(rows.size()), m = n > 0 ? static_cast<Eigen::Index>(rows.at(0).size()) : 0;
+  Eigen::MatrixXd out(n, m);
+  for (Eigen::Index r = 0; r < n; ++r)
+    for (Eigen::Index c = 0; c < m; ++c) out(r, c) = rows.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
+  return out;
+}
+
+/// The order of the modes in the covariance is that of "parameters".
+fitted_ends ends_of(const json& document) {
+  fitted_ends out;
+  if (!document.contains("terminations")) return out;
+  const json& ends = document.at("terminations");
+  for (const json& name : ends.at("fitted")) out.fitted[name == "near" ? 0 : 1] = true;
+  std::array<std::size_t, 2> taken{};
+  const json& names = ends.at("parameters");
+  for (std::size_t i = 0; i < names.size(); i += 3) {
+    const std::size_t e = names.at(i).get<std::string>().find(" of near ") != std::string::npos ? 0 : 1;
+    const json& m = ends.at(e == 0 ? "near" : "far").at(taken[e]++);
+    const double per_mass = m.at("impedance_per_mass_per_s").at("value");
+    out.modes.push_back({e, {m.at("frequency_Hz").at("value"), m.at("q").at("value"), per_mass}, m.at("frequency_Hz").at("sd"), m.at("q").at("sd"),
+                         m.at("impedance_per_mass_per_s").at("sd").get<double>() / per_mass, m.at("end_uncertain")});
+  }
+  out.covariance = matrix_of(ends.at("covariance"));
+  for (const json& place : document.at("positions"))
+    if (!out.modes.empty()) out.with_waveform.push_back(matrix_of(place.at("covariance_with_terminations")));
+  return out;
+}
+
 }  // namespace
 
 calibration_set set_of(const rig_calibration& fitted) {
   std::string names;
   for (const auto& t : fitted.takes) names += (names.empty() ? "" : ", ") + t.name;
-  return {"fit of " + names, fitted.rate_Hz(), fitted.fit.value[layout::fundamental], fitted.offset_N, fitted.declared, fitted.at};
+  return {"fit of " + names, fitted.rate_Hz(), fitted.fit.value[layout::fundamental], fitted.offset_N, fitted.declared, fitted.at, fitted.ends};
 }
 
 json to_json(const rig_calibration& c, const provenance& from) {
@@ -120,7 +165,11 @@ json to_json(const rig_calibration& c, const provenance& from) {
   out["impedance_relative_sd"] = number(c.at.front().impedance_relative_sd);
   out["waveform_parameters"] = parameter_names;
   out["positions"] = json::array();
-  for (std::size_t i = 0; i < c.at.size(); ++i) out["positions"].push_back(position_json(c, i));
+  for (std::size_t i = 0; i < c.at.size(); ++i) {
+    out["positions"].push_back(position_json(c, i));
+    if (!c.ends.modes.empty()) out["positions"].back()["covariance_with_terminations"] = matrix(c.ends.with_waveform[i]);
+  }
+  if (c.ends.fitted[0] || c.ends.fitted[1]) out["terminations"] = ends_json(c);
   out["takes"] = takes_json(c);
   out["fit"] = fit_json(c);
   out["warnings"] = c.warnings;
@@ -166,6 +215,7 @@ rosin::outcome<calibration_set> read_calibration(const std::string& path) {
       out.declared.push_back(place.at("declared"));
       out.at.push_back(c);
     }
+    out.ends = ends_of(document);
     const auto sound = [](const rosin::calibration& c) {
       return c.at.delay_s[0] > 0 && c.at.delay_s[1] > 0 && c.gain[0] > 0 && c.gain[1] > 0 && c.at.loss.quality > 0;
     };

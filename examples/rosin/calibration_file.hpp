@@ -17,6 +17,7 @@ struct calibration_set {
   std::array<doubtful, 2> offset_N{};
   std::vector<double> declared;            ///< positions, one for each of `at`
   std::vector<rosin::calibration> at;
+  fitted_ends ends;
 };
 
 [[nodiscard]] calibration_set set_of(const rig_calibration& fitted);

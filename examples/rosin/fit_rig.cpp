@@ -92,6 +92,34 @@ void predict(rig_calibration& c, bool draw) {
   }
 }
 
+/// Z before the fit, from nominal values; 0: unknown.
+double nominal_impedance(const rosin::rig_values& v) {
+  if (v.impedance_Ns_m) return v.impedance_Ns_m->value;
+  return v.tension_N && v.length_m ? v.tension_N->value / (2 * v.length_m->value * v.fundamental_Hz.value) : 0.0;
+}
+
+/// Plucks on terminations that give way, as declared or to be found.
+rosin::outcome<rosin::pluck_fit_result> fit_on_moving_ends(const rosin::rig& rig, rig_calibration& c) {
+  rosin::end_options how;
+  for (std::size_t e = 0; e < 2; ++e) {
+    const auto declared = declared_end(rig, e, nominal_impedance(c.values), c.warnings);
+    if (!declared) return rosin::failure{declared.error()};
+    how.known[e] = declared->admittance;
+    how.free_ends[e] = c.ends.fitted[e] = to_be_fitted(rig, e);
+  }
+  auto found = rosin::fit_ends(c.takes, guess_of(rig, c.values), {}, how);
+  if (!found) return rosin::failure{found.error()};
+  c.ends.modes = found->modes;
+  const Eigen::Index n = found->plucks.layout.size(), m = found->covariance.rows() - n;
+  c.ends.covariance = found->covariance.bottomRightCorner(m, m);
+  for (const double declared : found->plucks.layout.positions())
+    c.ends.with_waveform.emplace_back(rosin::waveform_jacobian(found->plucks, declared) * found->covariance.topRightCorner(n, m));
+  for (const auto& mode : c.ends.modes)
+    if (mode.end_uncertain)
+      c.warnings.push_back("the plucks cannot tell at which end the resonance at " + figure(mode.mode.frequency_Hz, "%.0f") + " Hz sits; it is taken to be at " + (mode.end == 0 ? "near" : "far"));
+  return std::move(found->plucks);
+}
+
 }  // namespace
 
 rosin::outcome<rig_calibration> calibrate(const rosin::rig& rig, provenance& from, bool draw) {
@@ -108,7 +136,7 @@ rosin::outcome<rig_calibration> calibrate(const rosin::rig& rig, provenance& fro
     for (const auto& line : out.warnings) why += "\n" + line;
     return rosin::failure{why};
   }
-  auto fit = rosin::fit_plucks(out.takes, guess_of(rig, out.values));
+  auto fit = any_end_moves(rig) ? fit_on_moving_ends(rig, out) : rosin::fit_plucks(out.takes, guess_of(rig, out.values));
   if (!fit) return rosin::failure{fit.error()};
   out.fit = *std::move(fit);
   derive_units(rig, out);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "fit_prediction.hpp"
+#include "rig_ends.hpp"
 #include "rig_input.hpp"
 
 #include <rosin/calibrate/calibration.hpp>
@@ -27,6 +28,7 @@ struct rig_calibration {
   std::vector<double> declared;
   std::array<doubtful, 2> offset_N{};               ///< of the sensors, over all plucks
   std::optional<doubtful> bending_stiffness_Nm2, impedance_Ns_m;
+  fitted_ends ends;                                 ///< what the plucks say of terminations that are to be fitted
   std::vector<std::string> assumed, warnings;
   bool incomplete = false;                          ///< plucks had to be left out, or the fit did not settle
 

@@ -48,31 +48,6 @@ rosin::calibration calibration_at(const calibration_set& set, double declared, d
   return c;
 }
 
-/// Y(f) of a termination as declared, R = (Z Y - 1) / (Z Y + 1).
-declared_end reflection_of(const std::optional<rosin::termination>& end, double impedance) {
-  using form = rosin::termination::form;
-  if (!end || end->kind == form::rigid || end->kind == form::fit) return {};
-  const auto admittance = [t = *end](double f) -> std::complex<double> {
-    std::complex<double> sum = 0;
-    for (const auto& m : t.modes) {
-      const double w = 2 * std::numbers::pi * f, w0 = 2 * std::numbers::pi * m.frequency_Hz;
-      sum += std::complex<double>(0, w) / (m.mass_kg * std::complex<double>(w0 * w0 - w * w, w * w0 / m.q));
-    }
-    const auto& table = t.admittance;
-    if (table.empty() || f < table.front().frequency_Hz || f > table.back().frequency_Hz) return sum;
-    const auto above = std::lower_bound(table.begin(), table.end(), f, [](const auto& p, double x) { return p.frequency_Hz < x; });
-    if (above == table.begin()) return sum + std::complex<double>(above->re_m_sN, above->im_m_sN);
-    const auto& b = *above;
-    const auto& a = *(above - 1);
-    const double u = (f - a.frequency_Hz) / (b.frequency_Hz - a.frequency_Hz);
-    return sum + std::complex<double>(a.re_m_sN + u * (b.re_m_sN - a.re_m_sN), a.im_m_sN + u * (b.im_m_sN - a.im_m_sN));
-  };
-  return {[admittance, impedance](double f) {
-    const std::complex<double> zy = impedance * admittance(f);
-    return (zy - 1.0) / (zy + 1.0);
-  }};
-}
-
 /// Filters are as long as the band's edge is narrow: one narrower than the fundamental would outlast the string's periods.
 rosin::outcome<rosin::band> band_of(const take_options& how, double rate_Hz, double fundamental_Hz) {
   rosin::band limits{0.30 * rate_Hz, 0.45 * rate_Hz};
@@ -86,10 +61,37 @@ rosin::outcome<rosin::band> band_of(const take_options& how, double rate_Hz, dou
   return limits;
 }
 
-process_input input_of(const rosin::rig& rig, const checked_take& read, take_reconstruction& r) {
-  process_input in{r.before, read.signals.near_N(), read.signals.far_N(), r.limits, r.rate_Hz, r.how.fine_tune, {}};
+/// Terminations as declared, or as the plucks say.
+std::optional<rosin::failure> set_ends(const rosin::rig& rig, take_reconstruction& r, process_input& in) {
+  const fitted_ends& fitted = r.calibration.ends;
+  for (std::size_t e = 0; e < 2; ++e) {
+    const std::string name = e == 0 ? "near" : "far";
+    auto end = declared_end(rig, e, r.before.at.impedance_Ns_m, r.warnings);
+    if (!end) return rosin::failure{end.error()};
+    in.ends[e] = *std::move(end);
+    if (!to_be_fitted(rig, e)) continue;
+    in.ends[e] = end_of_modes(fitted.end(e));
+    if (!fitted.fitted[e]) r.warnings.push_back("terminations." + name + " = \"fit\": the calibration says nothing of it: taken as rigid; fit the plucks again");
+    else if (!in.ends[e]) r.assumed.push_back("terminations." + name + " = \"fit\": the plucks show no motion of it: rigid");
+  }
+  if (fitted.modes.empty() || !(in.ends[0] || in.ends[1])) return std::nullopt;
+  in.uncertain_modes = fitted.list();
+  const Eigen::Index waveform = rosin::waveform_parameters, modes = fitted.covariance.rows();
+  std::size_t nearest = 0;
+  for (std::size_t i = 1; i < r.calibration.declared.size(); ++i)
+    if (std::abs(r.calibration.at[i].position - r.before.position) < std::abs(r.calibration.at[nearest].position - r.before.position)) nearest = i;
+  in.joint_covariance = Eigen::MatrixXd::Zero(waveform + modes, waveform + modes);
+  in.joint_covariance.topLeftCorner(waveform, waveform) = r.before.covariance;
+  in.joint_covariance.bottomRightCorner(modes, modes) = fitted.covariance;
+  in.joint_covariance.topRightCorner(waveform, modes) = fitted.with_waveform[nearest];
+  in.joint_covariance.bottomLeftCorner(modes, waveform) = fitted.with_waveform[nearest].transpose();
+  return std::nullopt;
+}
+
+rosin::outcome<process_input> input_of(const rosin::rig& rig, const checked_take& read, take_reconstruction& r) {
+  process_input in{r.before, read.signals.near_N(), read.signals.far_N(), r.limits, r.rate_Hz, r.how.fine_tune, {}, {}, {}};
   for (double& noise : in.calibration.noise_N) noise *= std::sqrt(r.rate_Hz / r.calibration.rate_Hz);
-  in.ends = {reflection_of(rig.near, r.before.at.impedance_Ns_m), reflection_of(rig.far, r.before.at.impedance_Ns_m)};
+  if (const auto why = set_ends(rig, r, in)) return *why;
   for (std::size_t c = 0; c < 2; ++c) {
     std::vector<double>& x = c == 0 ? in.near_N : in.far_N;
     const std::string name = c == 0 ? "near" : "far";
@@ -104,18 +106,6 @@ process_input input_of(const rosin::rig& rig, const checked_take& read, take_rec
     }
   }
   return in;
-}
-
-void note_ends(const rosin::rig& rig, take_reconstruction& r) {
-  using form = rosin::termination::form;
-  for (const auto& [name, end] : {std::pair{"near", &rig.near}, std::pair{"far", &rig.far}}) {
-    if (!*end || (*end)->kind == form::rigid) continue;
-    if ((*end)->kind == form::fit)
-      r.warnings.push_back(std::string("terminations.") + name + " = \"fit\": taken as rigid here");
-    else if (!r.how.frequency_domain)
-      r.warnings.push_back(std::string("terminations.") + name +
-                           " gives way as declared: the time domain takes it as rigid; --frequency-domain takes it as declared");
-  }
 }
 
 /// One period, at the samples of the stretch that it was fitted to.
@@ -270,9 +260,12 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   limit_loss(r.before, r.limits, r.warnings);
   if (calibration.rate_Hz != r.rate_Hz)
     r.warnings.push_back("recorded at " + figure(r.rate_Hz, "%.0f") + " Hz, the plucks at " + figure(calibration.rate_Hz, "%.0f") + " Hz");
-  note_ends(rig, r);
-  const process_input in = input_of(rig, read, r);
-  r.result = how.paper ? process_as_paper(in) : process_full(in);
+  const auto in = input_of(rig, read, r);
+  if (!in) return rosin::failure{in.error()};
+  const bool moving = in->ends[0] || in->ends[1];
+  if (how.paper && moving) r.warnings.emplace_back("--paper: terminations are taken as rigid");
+  r.result = how.paper ? process_as_paper(*in) : moving ? process_moving_ends(*in) : process_full(*in);
+  if (r.result.ends_settle) r.assumed.emplace_back("the take begins in motion: nothing is given until the terminations have forgotten what was before");
   const auto& m = r.result.motion;
   if (m.known.end <= m.known.begin)
     return rosin::failure{read.signals.file + ": take " + take.name + ": " + std::to_string(read.signals.frames()) + " samples are too few: the kernels reach beyond them everywhere"};

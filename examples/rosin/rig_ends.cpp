@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "rig_ends.hpp"
+
+#include <rosin/acquire/signal_checks.hpp>
+#include <rosin/acquire/rig_values.hpp>
+
+namespace tool {
+
+namespace {
+
+using form = rosin::termination::form;
+
+const std::optional<rosin::termination>& end_of(const rosin::rig& rig, std::size_t which) { return which == 0 ? rig.near : rig.far; }
+
+template <class End>
+moving_end wrapped(const End& end, rosin::known_admittance admittance) {
+  return {rosin::reflection_of_end<End>{end},
+          [end](std::span<const double> force_N, const rosin::band& limits, double rate_Hz) { return rosin::motion_of_end(end, force_N, limits, rate_Hz); },
+          std::move(admittance)};
+}
+
+rosin::outcome<moving_end> end_of_table(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
+  std::vector<rosin::measured_admittance> table;
+  for (const auto& p : t.admittance) table.push_back({p.frequency_Hz, {p.re_m_sN, p.im_m_sN}});
+  const auto end = rosin::complete_admittance(table, impedance_Ns_m);
+  const std::string name = which == 0 ? "near" : "far";
+  if (!end) return rosin::failure{rig.file + ": terminations." + name + ": " + t.file + ": " + end.error()};
+  const auto percent = [](double x) { return rosin::detail::figure(100 * x, "%.2g") + " %"; };
+  if (end->repaired > 0) remarks.push_back("terminations." + name + ": " + t.file + ": negative real parts (" + percent(end->repaired) + " of all) were set to 0: a termination takes energy");
+  if (end->mismatch > 0.1)
+    remarks.push_back("terminations." + name + ": " + t.file + ": its imaginary part differs by " + percent(end->mismatch) + " from what causality makes of its real part, which is used");
+  return wrapped(*end, [e = *end](std::complex<double> s) { return e.at(s); });
+}
+
+}  // namespace
+
+rosin::modal_termination fitted_ends::end(std::size_t which) const {
+  rosin::modal_termination out;
+  for (const auto& m : modes)
+    if (m.end == which) out.modes.push_back(m.mode);
+  return out;
+}
+
+std::vector<rosin::mode_of_end> fitted_ends::list() const {
+  std::vector<rosin::mode_of_end> out;
+  for (const auto& m : modes) out.push_back({m.end, m.mode});
+  return out;
+}
+
+moving_end end_of_modes(const rosin::modal_termination& end) {
+  if (end.modes.empty()) return {};
+  return wrapped(end, [end](std::complex<double> s) {
+    std::complex<double> sum = 0;
+    for (const auto& m : end.modes) sum += m(s);
+    return sum;
+  });
+}
+
+bool to_be_fitted(const rosin::rig& rig, std::size_t which) { return end_of(rig, which) && end_of(rig, which)->kind == form::fit; }
+
+bool any_end_moves(const rosin::rig& rig) {
+  return (rig.near && rig.near->kind != form::rigid) || (rig.far && rig.far->kind != form::rigid);
+}
+
+rosin::outcome<moving_end> declared_end(const rosin::rig& rig, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
+  const auto& end = end_of(rig, which);
+  if (!end || end->kind == form::rigid || end->kind == form::fit) return moving_end{};
+  if (!(impedance_Ns_m > 0))
+    return rosin::failure{rig.file + ": terminations: length_m and tension_N (or impedance_Ns_m) are needed to set an admittance against the string's"};
+  if (end->kind == form::table) return end_of_table(rig, *end, which, impedance_Ns_m, remarks);
+  rosin::modal_termination modes;
+  for (const auto& m : end->modes) modes.modes.push_back({m.frequency_Hz, m.q, impedance_Ns_m / m.mass_kg});
+  return end_of_modes(modes);
+}
+
+}  // namespace tool
