@@ -65,8 +65,7 @@ public:
   /// Total on any input. What rests on a NaN, an infinity (or what is on the way to one, above 1e26 N in float) or on frames
   /// before the first is NaN, never made up.
   output_type operator()(const input_type& frame) noexcept {
-    const bool sound = strangeness(frame) == T(0);
-    finite_ = sound ? finite_ + (known() ? 0 : 1) : 0;
+    const bool sound = count(frame);
     lines_.push(std::array<std::array<T, 1>, 2>{{{sound ? frame.near_N : T(0)}, {sound ? frame.far_N : T(0)}}});
     std::array<typename lanes_of<T, register_lanes<T>>::type, 4> sum;
     std::array<std::array<T, 1>, 4> wave;
@@ -82,16 +81,11 @@ public:
     return known() ? latest : unknown();
   }
 
-  /// The same frame by frame, quicker from `chunk` frames on. Both spans have one length.
+  /// The same for many frames, quicker from `chunk` on. Both spans have one length and do not overlap.
   void process(std::span<const input_type> in, std::span<output_type> out) noexcept {
-    std::size_t n = 0;
-    while (n < in.size()) {
-      const std::size_t count = in.size() - n < chunk ? in.size() - n : chunk;
-      if (count == chunk && known() && all_sound(in.data() + n)) run_chunk(in.data() + n, out.data() + n);
-      else
-        for (std::size_t i = n; i < n + count; ++i) out[i] = (*this)(in[i]);
-      n += count;
-    }
+    const std::size_t whole = in.size() / chunk * chunk;
+    for (std::size_t n = 0; n < whole; n += chunk) run_chunk(in.data() + n, out.data() + n);
+    for (std::size_t n = whole; n < in.size(); ++n) out[n] = (*this)(in[n]);
   }
 
   /// The latest output rests on finite samples only, and on as many as it needs: false at the beginning, and after a NaN or an
@@ -121,6 +115,12 @@ private:
   static constexpr T strangeness(const input_type& frame) noexcept {
     constexpr T headroom = T(1ULL << 40U);
     return (frame.near_N * headroom - frame.near_N * headroom) + (frame.far_N * headroom - frame.far_N * headroom);
+  }
+  /// Counts the sound frames since the last that was not, as far as they matter.
+  bool count(const input_type& frame) noexcept {
+    const bool sound = strangeness(frame) == T(0);
+    finite_ = sound ? finite_ + (known() ? 0 : 1) : 0;
+    return sound;
   }
   static bool all_sound(const input_type* in) noexcept {
     T sum = 0;
@@ -174,13 +174,20 @@ private:
   }
 
   void run_chunk(const input_type* in, output_type* out) noexcept {
+    const bool sound = all_sound(in);
     std::array<row, 2> forces;
     for (std::size_t i = 0; i < chunk; ++i) forces[0][i] = in[i].near_N, forces[1][i] = in[i].far_N;
+    for (std::size_t i = 0; i < chunk && !sound; ++i)
+      if (strangeness(in[i]) != T(0)) forces[0][i] = forces[1][i] = 0;
     lines_.push(forces);
     std::array<row, 4> wave;
     for (std::size_t p = 0; p < 4; ++p)
       detail::passage_fir(passage_[p].oldest(), samples(p, passage_[p].count + chunk - 2), passage_[p].count, wave[p].data());
     put_chunk(mixed(wave), out);
+    for (std::size_t i = 0; i < chunk && !(sound && known()); ++i) {
+      count(in[i]);
+      if (!known()) out[i] = unknown();
+    }
   }
 
   template <std::size_t Count>
