@@ -79,12 +79,12 @@ private:
   void put(const std::string& packet) {
     const auto now = std::chrono::steady_clock::now();
     if (rest_.empty()) progress_ = now;
-    if (rest_.size() < 8 * room) rest_ += packet;
+    if (rest_.size() < 64 * room) rest_ += packet;
     const ssize_t done = ::write(to_.fd(), rest_.data(), rest_.size());
     if (done > 0) {
       rest_.erase(0, static_cast<std::size_t>(done));
       progress_ = now;
-    } else if (now - progress_ > std::chrono::milliseconds{200}) {
+    } else if (now - progress_ > std::chrono::seconds{1}) {
       rest_.resize(std::min(rest_.size(), rest_.find('\0') + 1));
     }
   }

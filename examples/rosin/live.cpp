@@ -64,9 +64,10 @@ exit_code run(const options& given) {
   if (!calibration) return fail(calibration.error(), as_json);
   auto input = open_input(given.input);
   if (!input) return fail(input.error(), as_json);
+  recorder from{*std::move(input), given.how};  // from here on it is listened to, whatever else takes its time
   for (const auto& c : rig->channels)
-    if (c.index >= input->format().channels) return fail(rig->file + ": channels." + c.name + ".index: the source has no such channel", as_json);
-  auto chain = live_chain::design(*rig, take, *calibration, input->format(), given.live);
+    if (c.index >= from.format().channels) return fail(rig->file + ": channels." + c.name + ".index: the source has no such channel", as_json);
+  auto chain = live_chain::design(*rig, take, *calibration, from.format(), given.live);
   if (!chain) return fail(chain.error(), as_json);
   std::optional<sled> moves;
   if (!given.stroke.device.empty()) {
@@ -75,7 +76,6 @@ exit_code run(const options& given) {
     moves.emplace(*std::move(opened));
   }
   for (const auto& line : chain->remarks()) std::cerr << "rosin: " << line << '\n';
-  recorder from{*std::move(input), given.how};
   std::uint64_t early_bytes = 0;
   const take_report report = from.record(take, files ? &*files : nullptr, hooks_of(*chain, moves, early_bytes));
   const std::uint64_t late_bytes = resident_bytes();

@@ -72,7 +72,7 @@ public:
     const auto part = trigger_.push(frames);
     if (trigger_.fired()) {
       report_.triggered = true;
-      if (before && got.lost > 0 && !missing(got.lost)) return false;
+      if (before && got.lost > 0 && report_.frames > 0 && !missing(got.lost)) return false;
       if (!keep(part)) return false;
     }
     note_time(begin, got.frames);

@@ -56,7 +56,7 @@ says "late: 0.200 s"
 # A harmed line: every missing frame is in a gap that the rig file tells of; all others are in their place.
 start_rig() {
   rm -f ready.txt
-  "$tool" fake-rig described --line line "$@" </dev/null >ready.txt & fake=$!
+  "$tool" fake-rig described --line line --seconds 120 "$@" </dev/null >ready.txt & fake=$!
   for _ in $(seq 100); do grep -qs ready ready.txt && break; sleep 0.05; done
 }
 trap 'kill $fake 2>/dev/null || true' EXIT
@@ -84,8 +84,8 @@ grep -q '^# gap: [0-9]* frames are missing from frame' rig/rig.toml || { echo "F
 # Nobody takes the frames for a while; then the device is pulled.
 kill $fake; wait $fake 2>/dev/null || true
 start_rig --loop numbers
-"$tool" record rig --source serial:line --take halted --kind quiet --seconds 2 >out.txt 2>err.txt & recorder=$!
-sleep 0.5; kill -STOP $recorder; sleep 1.2; kill -CONT $recorder
+"$tool" record rig --source serial:line --take halted --kind quiet --seconds 3 >out.txt 2>err.txt & recorder=$!
+sleep 0.5; kill -STOP $recorder; sleep 2; kill -CONT $recorder
 got=0; wait $recorder || got=$?
 same $got 1
 says "frames are missing"

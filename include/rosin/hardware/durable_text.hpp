@@ -15,8 +15,8 @@ namespace rosin {
 
 /// Names in a folder (of a file that was just made) put on the disk.
 [[nodiscard]] inline std::optional<failure> sync_folder_of(const std::string& path) {
-  std::string folder = std::filesystem::path{path}.parent_path().string();
-  if (folder.empty()) folder = ".";
+  const std::filesystem::path parent = std::filesystem::path{path}.parent_path();
+  const std::string folder = (parent / ".").string();
   const detail::owned_fd fd{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   if (fd.get() >= 0 && (::fsync(fd.get()) == 0 || errno == EINVAL)) return std::nullopt;
   return failure{folder + ": " + std::strerror(errno)};
