@@ -28,7 +28,27 @@ done
 expect 0 check rig
 grep -q 'hold_out = true' rig/rig.toml || { echo "FAILED: hold_out is not there"; failures=1; }
 
+# An ALSA device in user space, which plays the samples of a file (as fast as it can, so that an overrun is no wonder).
+cat >asound.conf <<CONF
+pcm.null { type null }
+pcm.played { type file slave.pcm { type null } file "/dev/null" infile "$here/bare" format "raw" }
+CONF
+export ALSA_CONFIG_PATH=$here/asound.conf
+got=0
+"$tool" record rig --source alsa:played --rate 48000 --take alsa --kind quiet --seconds 0.2 >out.txt 2>err.txt || got=$?
+if [ $got != 2 ]; then
+  says "alsa: 0.200 s, 2 channels at 48000 Hz, 16 bits"
+  cmp <(head -c 38400 bare) <(tail -c +105 rig/alsa.wav) || failures=$((failures + 1))
+  expect 2 record rig --source alsa:nothing --kind quiet
+  says "alsa nothing: "
+else
+  says "this rosin was built without it"
+fi
+expect 2 record rig --source jack:nobody:out_1,nobody:out_2 --kind quiet
+says "jack:"
+
 # Refused, and nothing is left behind.
+takes=$(grep -c '^\[\[take\]\]' rig/rig.toml)
 expect 2 record new --source described/quiet.wav --kind quiet
 says "new/rig.toml: is not there; --like names a rig file"
 expect 2 record rig --like described --source described/quiet.wav --kind quiet
@@ -46,7 +66,7 @@ says "the source has 1 channel(s)"
 expect 1 record rig --source described/quiet.wav --kind quiet --trigger 0.5
 says "the source ended before the trigger was reached" "nothing was recorded"
 [ ! -e rig/quiet-1.wav ] || { echo "FAILED: an empty take"; failures=1; }
-same "$(grep -c '^\[\[take\]\]' rig/rig.toml)" 3
+same "$(grep -c '^\[\[take\]\]' rig/rig.toml)" "$takes"
 
 # The string is released 20 ms after the beginning: the trigger needs 60 ms to know its mean.
 { for _ in 1 2 3 4 5 6; do perl -e 'open(my $in, "<:raw", "described/pluck-1.wav"); local $/; print substr(<$in>, 44, 3000)'; done; tail -c +45 described/pluck-1.wav; } >late
