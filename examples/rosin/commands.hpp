@@ -8,6 +8,7 @@
 
 namespace tool {
 
+void add_challenge(CLI::App& app, exit_code& result);
 void add_check(CLI::App& app, exit_code& result);
 void add_compare(CLI::App& app, exit_code& result);
 void add_diagnose(CLI::App& app, exit_code& result);

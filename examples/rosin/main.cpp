@@ -47,6 +47,7 @@ tool::exit_code run(int argc, char** argv) {
   tool::add_simulate(app, result);
   tool::add_sweep(app, result);
   tool::add_compare(app, result);
+  tool::add_challenge(app, result);
   tool::add_validate(app, result);
   try {
     app.parse(argc, argv);

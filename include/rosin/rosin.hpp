@@ -123,6 +123,9 @@
 #include <rosin/friction/yield_curve.hpp>
 #include <rosin/friction/yield_curve_design.hpp>
 
+#include <rosin/simulate/burdened_sensors.hpp>
+#include <rosin/simulate/burdened_string.hpp>
+#include <rosin/simulate/burdened_take.hpp>
 #include <rosin/simulate/converter.hpp>
 #include <rosin/simulate/modal_bank.hpp>
 #include <rosin/simulate/modal_contact.hpp>
@@ -132,6 +135,7 @@
 #include <rosin/simulate/modal_string.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 #include <rosin/simulate/modal_take.hpp>
+#include <rosin/simulate/port_bank.hpp>
 #include <rosin/simulate/profiled_rod.hpp>
 #include <rosin/simulate/random_rig.hpp>
 #include <rosin/simulate/regime.hpp>
@@ -153,6 +157,7 @@
 #include <rosin/diagnose/contact_width.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
 #include <rosin/diagnose/friction_laws.hpp>
+#include <rosin/diagnose/loaded_motion.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/pluck_candidates.hpp>
 #include <rosin/diagnose/pluck_diagnosis.hpp>

@@ -55,10 +55,10 @@ inline void divide_by_sensor(std::vector<double>& x, const sensor_response& sens
 
 }  // namespace detail
 
-/// Whether all effects of a fit are of sensors and plucking only, so that reconstruction can go on as if they were not there.
+/// Whether nothing sits on the string and its ends are rigid. A second polarisation does not count: the bow moves one of them only.
 [[nodiscard]] inline bool string_is_plain(const std::vector<pluck_effect>& effects) {
   return std::none_of(effects.begin(), effects.end(), [](const pluck_effect& e) {
-    return e.at_end || e.name == "point-mass" || e.name == "point-damper" || e.name == "second-polarization";
+    return e.at_end || e.name == "point-mass" || e.name == "point-damper";
   });
 }
 

@@ -85,10 +85,8 @@ inline void add_sensor_ringing(const pluck_scene& scene, double position, std::v
 
 }  // namespace detail
 
-/// Whether the scene's lines need poles of its determinant, and which: see string_poles.
-[[nodiscard]] inline std::vector<damped_line> scene_lines(const pluck_scene& scene, double position, const band& limits, int most,
-                                                          const std::vector<std::complex<double>>& poles) {
-  std::vector<damped_line> lines = detail::string_lines(scene, position, most, poles, limits.stop_Hz);
+/// What wire, polarisation and sensors make of the string's own lines (detail::string_lines).
+[[nodiscard]] inline std::vector<damped_line> recorded_lines(std::vector<damped_line> lines, const pluck_scene& scene, double position, const band& limits) {
   detail::add_polarisation(scene, lines);
   for (damped_line& line : lines) {
     const std::complex<double> wire = detail::wire_factor(scene, line.pole);
@@ -101,6 +99,12 @@ inline void add_sensor_ringing(const pluck_scene& scene, double position, std::v
     line.residue = {weight * (near + scene.crosstalk * far), weight * (far + scene.crosstalk * near)};
   }
   return lines;
+}
+
+/// All of it. `poles`: of the scene's string (string_poles.hpp); not needed where it is plain.
+[[nodiscard]] inline std::vector<damped_line> scene_lines(const pluck_scene& scene, double position, const band& limits, int most,
+                                                          const std::vector<std::complex<double>>& poles) {
+  return recorded_lines(detail::string_lines(scene, position, most, poles, limits.stop_Hz), scene, position, limits);
 }
 
 }  // namespace rosin

@@ -16,28 +16,36 @@ namespace rosin {
 
 namespace detail {
 
-/// Poles of scenes met so far, the newest last; each search begins from the nearest of them.
-class pole_memory {
+/// Strings met so far, the newest last: their poles, each search begun from the nearest, and their lines for each place of a pluck.
+class string_memory {
 public:
-  [[nodiscard]] const std::vector<std::complex<double>>& of(const Eigen::VectorXd& key, const pluck_scene& scene, double highest_Hz, int most) {
-    for (const auto& e : kept_)
-      if (e.key == key) return e.poles;
-    std::vector<std::complex<double>> start;
-    double nearest = 1e-4;
-    for (const auto& e : kept_) {
-      const double apart = ((e.key - key).array() / (e.key.array().abs() + 1e-9)).abs().maxCoeff();
-      if (apart < nearest) nearest = apart, start = e.poles;
-    }
-    if (kept_.size() > 80) kept_.erase(kept_.begin(), kept_.begin() + 40);
-    kept_.push_back({key, string_poles(scene, highest_Hz, most, start)});
-    return kept_.back().poles;
+  [[nodiscard]] const std::vector<damped_line>& lines(const Eigen::VectorXd& key, const pluck_scene& scene, double position, const band& limits, int most) {
+    entry& e = of(key, scene, limits.stop_Hz, most);
+    for (const auto& [place, lines] : e.lines)
+      if (place == position) return lines;
+    return e.lines.emplace_back(position, string_lines(scene, position, most, e.poles, limits.stop_Hz)).second;
   }
 
 private:
   struct entry {
     Eigen::VectorXd key;
     std::vector<std::complex<double>> poles;
+    std::vector<std::pair<double, std::vector<damped_line>>> lines;
   };
+
+  entry& of(const Eigen::VectorXd& key, const pluck_scene& scene, double highest_Hz, int most) {
+    for (auto& e : kept_)
+      if (e.key == key) return e;
+    std::vector<std::complex<double>> start;
+    double nearest = 0.02;
+    for (const auto& e : kept_) {
+      const double apart = ((e.key - key).array() / (e.key.array().abs() + 1e-9)).abs().maxCoeff();
+      if (apart < nearest) nearest = apart, start = e.poles;
+    }
+    if (kept_.size() > 80) kept_.erase(kept_.begin(), kept_.begin() + 40);
+    return kept_.emplace_back(entry{key, string_poles(scene, highest_Hz, most, start), {}});
+  }
+
   std::vector<entry> kept_;
 };
 
@@ -53,7 +61,7 @@ enum class freedom { all, no_corrections, release_only };
 class scene_plucks : public pluck_layout {
 public:
   scene_plucks(const pluck_layout& layout, std::array<double, 2> corner_Hz, std::vector<pluck_effect> effects, freedom free = freedom::all)
-      : pluck_layout{layout}, corner_Hz_{corner_Hz}, effects_{std::move(effects)}, free_{free}, poles_{std::make_shared<detail::pole_memory>()} {
+      : pluck_layout{layout}, corner_Hz_{corner_Hz}, effects_{std::move(effects)}, free_{free}, strings_{std::make_shared<detail::string_memory>()} {
     for (const auto& e : effects_)
       for (const auto& p : e.parameters) added_.push_back(p);
   }
@@ -109,8 +117,7 @@ public:
     const double position_now = v[position(take)], released = release_s(v, take), newtons = std::exp(v[at(take, strength)]);
     std::vector<damped_line> out;
     if (part == 1) {
-      static const std::vector<std::complex<double>> none;
-      out = scene_lines(s, position_now, limits, most, s.plain_string() ? none : poles_->of(key(v), s, limits.stop_Hz, most));
+      out = s.plain_string() ? scene_lines(s, position_now, limits, most, {}) : recorded_lines(strings_->lines(key(v), s, position_now, limits, most), s, position_now, limits);
       for (damped_line& line : out) {
         const std::complex<double> turned = newtons * std::exp(line.pole * (begin_s - released));
         for (auto& r : line.residue) r *= turned;
@@ -143,7 +150,7 @@ private:
   std::vector<pluck_effect> effects_;
   freedom free_;
   std::vector<effect_parameter> added_;
-  std::shared_ptr<detail::pole_memory> poles_;
+  std::shared_ptr<detail::string_memory> strings_;
 };
 
 }  // namespace rosin

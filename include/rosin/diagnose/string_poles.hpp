@@ -20,7 +20,7 @@ namespace detail {
 
 /// D(s), times the polynomials of the ends' modes: entire around the roots that are sought.
 inline std::complex<double> characteristic(const pluck_scene& scene, std::complex<double> s, double strength) {
-  std::complex<double> value = close_loop(scene, 0.5, s, strength).determinant;
+  std::complex<double> value = loop_determinant(scene, s, strength);
   for (const yielding_end& end : scene.ends)
     for (const yielding_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
@@ -29,26 +29,45 @@ inline std::complex<double> characteristic(const pluck_scene& scene, std::comple
   return value;
 }
 
-/// One Aberth sweep; returns the largest correction relative to the spacing.
-inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>& roots, double strength, double spacing) {
+/// One Aberth sweep over the roots that are not settled yet; returns the largest correction relative to the spacing.
+inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>& roots, std::vector<bool>& settled, double strength, double spacing) {
   constexpr std::size_t neighbours = 3;
   double largest = 0;
   for (std::size_t i = 0; i < roots.size(); ++i) {
+    if (settled[i]) continue;
     const std::complex<double> s = roots[i], h(0, 1e-4 * spacing);
     const std::complex<double> above = characteristic(scene, s + h, strength), below = characteristic(scene, s - h, strength);
-    const std::complex<double> here = 0.5 * (above + below), slope = (above - below) / (2.0 * h);
+    const std::complex<double> newton = (above + below) * h * reciprocal(above - below);  // value over slope
     std::complex<double> repulsion = 0;
     for (std::size_t j = i > neighbours ? i - neighbours : 0; j < std::min(roots.size(), i + neighbours + 1); ++j)
-      if (j != i && std::abs(roots[i] - roots[j]) > 1e-9 * spacing) repulsion += 1.0 / (roots[i] - roots[j]);
+      if (j != i && std::norm(roots[i] - roots[j]) > 1e-18 * spacing * spacing) repulsion += reciprocal(roots[i] - roots[j]);
     // The roots that are not sought stand in a regular comb; only what a neighbour adds beyond it must repel.
-    const std::complex<double> newton = here / slope;
-    std::complex<double> step = newton / (1.0 - newton * repulsion);
-    if (std::abs(newton) < 0.02 * spacing || !std::isfinite(std::abs(step))) step = newton;
-    if (std::abs(step) > 0.3 * spacing) step *= 0.3 * spacing / std::abs(step);
-    roots[i] -= step;
-    largest = std::max(largest, std::abs(step) / spacing);
+    std::complex<double> step = newton * reciprocal(1.0 - newton * repulsion);
+    if (std::abs(newton) < 0.02 * spacing || !std::isfinite(std::norm(step))) step = newton;
+    const double length = std::abs(step) / spacing;
+    roots[i] -= length > 0.3 ? step * (0.3 / length) : step;
+    settled[i] = length < 1e-5;  // the next correction would be of the order of its square
+    largest = std::max(largest, length);
   }
   return largest;
+}
+
+/// Sweeps until all roots are settled; false where they are not after that many.
+inline bool settle(const pluck_scene& scene, std::vector<std::complex<double>>& roots, double strength, double spacing, int most) {
+  std::vector<bool> settled(roots.size(), false);
+  for (int i = 0; i < most; ++i)
+    if (const double moved = sweep(scene, roots, settled, strength, spacing); !(moved >= 1e-5)) return std::isfinite(moved);
+  return false;
+}
+
+/// No root has wandered to another's place.
+inline bool stayed(const std::vector<std::complex<double>>& roots, const std::vector<std::complex<double>>& begin, double spacing) {
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    if (!(std::norm(roots[i] - begin[i]) < 0.04 * spacing * spacing)) return false;
+    for (std::size_t j = i + 1; j < std::min(roots.size(), i + 3); ++j)
+      if (std::norm(roots[i] - roots[j]) < 1e-8 * spacing * spacing) return false;
+  }
+  return true;
 }
 
 }  // namespace detail
@@ -57,31 +76,27 @@ inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>&
 [[nodiscard]] inline std::vector<std::complex<double>> string_poles(const pluck_scene& scene, double highest_Hz, int most,
                                                                     const std::vector<std::complex<double>>& near = {}) {
   const double spacing = 2 * std::numbers::pi * scene.string.fundamental_Hz;
-  std::vector<std::complex<double>> roots = near;
-  const bool warm = !near.empty();
-  if (!warm) {
-    for (int n = 1; n <= most; ++n) {
-      const double f = scene.string.partial_Hz(n);
-      if (f >= highest_Hz) break;
-      roots.emplace_back(-std::numbers::pi * f * scene.string.loss.inverse_q(f), 2 * std::numbers::pi * f);
+  if (!near.empty()) {
+    std::vector<std::complex<double>> roots = near;
+    if (detail::settle(scene, roots, 1.0, spacing, 8) && detail::stayed(roots, near, spacing)) return roots;
+  }
+  std::vector<std::complex<double>> roots;
+  for (int n = 1; n <= most; ++n) {
+    const double f = scene.string.partial_Hz(n);
+    if (f >= highest_Hz) break;
+    roots.emplace_back(-std::numbers::pi * f * scene.string.loss.inverse_q(f), 2 * std::numbers::pi * f);
+  }
+  for (const yielding_end& end : scene.ends)
+    for (const yielding_mode& m : end.modes) {
+      const double w = 2 * std::numbers::pi * m.frequency_Hz;
+      roots.emplace_back(-w / (2 * m.q), w * std::sqrt(std::max(0.01, 1 - 0.25 / (m.q * m.q))));
     }
-    for (const yielding_end& end : scene.ends)
-      for (const yielding_mode& m : end.modes) {
-        const double w = 2 * std::numbers::pi * m.frequency_Hz;
-        roots.emplace_back(-w / (2 * m.q), w * std::sqrt(std::max(0.01, 1 - 0.25 / (m.q * m.q))));
-      }
-    std::sort(roots.begin(), roots.end(), [](auto a, auto b) { return a.imag() < b.imag(); });
-  }
+  std::sort(roots.begin(), roots.end(), [](auto a, auto b) { return a.imag() < b.imag(); });
   const std::vector<std::complex<double>> begin = roots;
-  const double first = detail::sweep(scene, roots, 1.0, spacing);
-  if (warm || first < 0.01) {  // next to where it began
-    for (int i = 0; i < 8; ++i)
-      if (detail::sweep(scene, roots, 1.0, spacing) < 1e-9) return roots;
-  }
+  std::vector<bool> none(roots.size(), false);
+  if (detail::sweep(scene, roots, none, 1.0, spacing) < 0.01 && detail::settle(scene, roots, 1.0, spacing, 8)) return roots;  // next to where it began
   roots = begin;
-  for (double strength = 0.125; strength <= 1.0; strength += 0.125)
-    for (int i = 0; i < (strength == 1.0 ? 12 : 4); ++i)
-      if (detail::sweep(scene, roots, strength, spacing) < 1e-9) break;
+  for (double strength = 0.125; strength <= 1.0; strength += 0.125) detail::settle(scene, roots, strength, spacing, strength == 1.0 ? 12 : 4);
   return roots;
 }
 
@@ -93,10 +108,9 @@ inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>&
   for (const std::complex<double> s : poles) {
     const std::complex<double> h(0, 1e-4 * spacing);
     const loop_response above = close_loop(scene, position, s + h), below = close_loop(scene, position, s - h);
-    const std::complex<double> slope = (above.determinant - below.determinant) / (2.0 * h);
+    const std::complex<double> over = detail::reciprocal((above.determinant - below.determinant) * s) * (-2.0 * h);
     damped_line line{s, {}};
-    for (std::size_t e = 0; e < 2; ++e)
-      line.residue[e] = -2.0 * 0.5 * (above.times_determinant[e] + below.times_determinant[e]) / (slope * s);
+    for (std::size_t e = 0; e < 2; ++e) line.residue[e] = over * (above.times_determinant[e] + below.times_determinant[e]);
     lines.push_back(line);
   }
   return lines;

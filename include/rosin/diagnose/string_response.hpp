@@ -22,6 +22,27 @@
 
 namespace rosin {
 
+namespace detail {
+
+/// sin and cos of z together. Damping is weak, so that Im z is small nearly always: then the hyperbolic parts are short series.
+struct sine_cosine {
+  std::complex<double> sine, cosine;
+
+  explicit sine_cosine(std::complex<double> z) {
+    const double s = std::sin(z.real()), c = std::cos(z.real()), y = z.imag(), y2 = y * y;
+    const bool small = y2 < 0.01;  // the first term left out is below 1e-17
+    const double sh = small ? y * (1 + y2 / 6 * (1 + y2 / 20 * (1 + y2 / 42 * (1 + y2 / 72)))) : std::sinh(y);
+    const double ch = small ? 1 + y2 / 2 * (1 + y2 / 12 * (1 + y2 / 30 * (1 + y2 / 56))) : std::cosh(y);
+    sine = {s * ch, c * sh};
+    cosine = {c * ch, -s * sh};
+  }
+};
+
+/// 1 / z without the guards against overflow that a library's division has.
+[[nodiscard]] inline std::complex<double> reciprocal(std::complex<double> z) { return std::conj(z) / std::norm(z); }
+
+}  // namespace detail
+
 /// The string of a scene at one complex frequency.
 class string_at {
 public:
@@ -36,23 +57,25 @@ public:
     K_ = epsilon * q_ * q_;
     kappa_ = std::sqrt(q_ * q_ + 1 / epsilon);
     epsilon_ = epsilon;
-    sine_ = std::sin(q_ * length_);
+    const detail::sine_cosine whole(q_ * length_);
+    sine_ = whole.sine, cosine_ = whole.cosine;
+    stiff_ = detail::reciprocal(1.0 + 2.0 * K_);
   }
 
   /// sin(qL) times the velocity at b for a unit force at a (fractions), in units of 1/Z.
   [[nodiscard]] complex mobility(double a, double b) const {
     const double low = std::min(a, b) * length_, high = (1 - std::max(a, b)) * length_, gap = length_ - low - high;
-    const complex decay = (std::exp(-kappa_ * gap) - std::exp(-kappa_ * (gap + 2 * low)) - std::exp(-kappa_ * (gap + 2 * high))) / 2.0;
-    return s_ / (1.0 + 2.0 * K_) * (std::sin(q_ * low) * std::sin(q_ * high) / q_ - sine_ * decay / kappa_);
+    const complex decay = (fading(gap) - fading(gap + 2 * low) - fading(gap + 2 * high)) / 2.0;
+    return s_ * stiff_ * (sine_of(low) * sine_of(high) * detail::reciprocal(q_) - sine_ * decay * detail::reciprocal(kappa_));
   }
   /// sin(qL) times the force on end 0 or 1 for a unit force at a.
   [[nodiscard]] complex end_force(int end, double a) const {
     const double other = (end == 0 ? 1 - a : a) * length_, here = length_ - other;
-    return ((1.0 + K_) * std::sin(q_ * other) + K_ * sine_ * std::exp(-kappa_ * here)) / (1.0 + 2.0 * K_);
+    return ((1.0 + K_) * sine_of(other) + K_ * sine_ * fading(here)) * stiff_;
   }
   /// sin(qL) times the force (in Z) on an end per unit speed of the same end, and of the other end.
   [[nodiscard]] complex own_end() const {
-    return -kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * (kappa_ * kappa_ * kappa_ * std::cos(q_ * length_) - q_ * q_ * q_ * sine_);
+    return -kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * (kappa_ * kappa_ * kappa_ * cosine_ - q_ * q_ * q_ * sine_);
   }
   [[nodiscard]] complex other_end() const {
     return kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * kappa_ * kappa_ * kappa_;
@@ -60,9 +83,13 @@ public:
   [[nodiscard]] complex sine() const { return sine_; }
 
 private:
+  [[nodiscard]] complex sine_of(double time) const { return detail::sine_cosine(q_ * time).sine; }
+  /// The near field at that distance.
+  [[nodiscard]] complex fading(double time) const { return kappa_.real() * time > 40 ? complex(0) : std::exp(-kappa_ * time); }
+
   complex s_;
   double length_, epsilon_ = 0;
-  complex q_, K_, kappa_, sine_;
+  complex q_, K_, kappa_, sine_, cosine_, stiff_;
 };
 
 /// Scatterers and yielding ends together.
@@ -74,48 +101,82 @@ struct loop_response {
   std::array<std::complex<double>, 2> times_determinant; ///< end forces times the determinant
 };
 
-/// Unknowns: forces of the scatterers on the string, speeds of the yielding ends. `strength` scales all of them.
-[[nodiscard]] inline loop_response close_loop(const pluck_scene& scene, double position, std::complex<double> s, double strength = 1) {
-  using complex = std::complex<double>;
-  const string_at string(scene, s);
+namespace detail {
+
+using loop_matrix = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic, 0, most_loops, most_loops>;
+
+/// The ends of a scene that yield.
+struct moving_ends {
+  std::array<int, 2> end{};
+  Eigen::Index count = 0;
+  explicit moving_ends(const pluck_scene& scene) {
+    for (int e = 0; e < 2; ++e)
+      if (!scene.ends[static_cast<std::size_t>(e)].rigid()) end[static_cast<std::size_t>(count++)] = e;
+  }
+  [[nodiscard]] int operator[](Eigen::Index i) const { return end[static_cast<std::size_t>(i)]; }
+};
+
+/// sin(qL) times the loop's matrix: g_i + Z_i v_i = 0 for scatterers, u_m - Y F_m = 0 for ends (the string's velocity by u_m is by
+/// reciprocity its end force).
+[[nodiscard]] inline loop_matrix loop_of(const pluck_scene& scene, const string_at& string, const moving_ends& ends, std::complex<double> s, double strength) {
   const auto count = static_cast<Eigen::Index>(scene.scatterers.size());
-  std::array<int, 2> moving{};
-  Eigen::Index ends = 0;
-  for (int e = 0; e < 2; ++e)
-    if (!scene.ends[static_cast<std::size_t>(e)].rigid()) moving[static_cast<std::size_t>(ends++)] = e;
-  const Eigen::Index n = count + ends;
-  // A x = drive with A = sin(qL) (...); F_end sin(qL) = end_force + out x.  Scaled so that nothing is divided by sin(qL).
-  if (n == 0) return {string.sine(), {string.end_force(0, position), string.end_force(1, position)}};
-  using small = Eigen::Matrix<complex, Eigen::Dynamic, Eigen::Dynamic, 0, most_loops, most_loops>;
-  using column = Eigen::Matrix<complex, Eigen::Dynamic, 1, 0, most_loops, 1>;
-  small A = small::Zero(n, n);
-  column drive(n);
-  Eigen::Matrix<complex, 2, Eigen::Dynamic, 0, 2, most_loops> out(2, n);
   const auto at = [&](Eigen::Index i) { return scene.scatterers[static_cast<std::size_t>(i)].position; };
-  for (Eigen::Index i = 0; i < count; ++i) {  // g_i + Z_i v_i = 0
-    const complex Z = strength * scene.scatterers[static_cast<std::size_t>(i)].impedance(s);
-    A(i, i) = string.sine();
-    for (Eigen::Index j = 0; j < count; ++j) A(i, j) += Z * string.mobility(at(i), at(j));
-    for (Eigen::Index m = 0; m < ends; ++m) A(i, count + m) = Z * string.end_force(moving[static_cast<std::size_t>(m)], at(i));
-    drive[i] = -Z * string.mobility(at(i), position);
-    for (int e = 0; e < 2; ++e) out(e, i) = string.end_force(e, at(i));
+  loop_matrix A = loop_matrix::Zero(count + ends.count, count + ends.count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::complex<double> Z = strength * scene.scatterers[static_cast<std::size_t>(i)].impedance(s);
+    for (Eigen::Index j = 0; j < count; ++j) A(i, j) = Z * string.mobility(at(i), at(j));
+    A(i, i) += string.sine();
+    for (Eigen::Index m = 0; m < ends.count; ++m) A(i, count + m) = Z * string.end_force(ends[m], at(i));
   }
-  for (Eigen::Index m = 0; m < ends; ++m) {  // u_m - Y F_m = 0; the string's velocity by u_m is by reciprocity its end force
-    const int e = moving[static_cast<std::size_t>(m)];
-    const complex Y = strength * scene.ends[static_cast<std::size_t>(e)].admittance(s);
+  for (Eigen::Index m = 0; m < ends.count; ++m) {
+    const std::complex<double> Y = strength * scene.ends[static_cast<std::size_t>(ends[m])].admittance(s);
     A(count + m, count + m) = string.sine();
-    for (Eigen::Index i = 0; i < count; ++i) A(count + m, i) = -Y * string.end_force(e, at(i));
-    for (Eigen::Index k = 0; k < ends; ++k)
-      A(count + m, count + k) -= Y * (k == m ? string.own_end() : string.other_end());
-    drive[count + m] = Y * string.end_force(e, position);
-    for (int o = 0; o < 2; ++o) out(o, count + m) = o == e ? string.own_end() : string.other_end();
+    for (Eigen::Index i = 0; i < count; ++i) A(count + m, i) = -Y * string.end_force(ends[m], at(i));
+    for (Eigen::Index k = 0; k < ends.count; ++k) A(count + m, count + k) -= Y * (k == m ? string.own_end() : string.other_end());
   }
-  const complex det = A.determinant();
-  loop_response r{det / std::pow(string.sine(), static_cast<int>(n) - 1), {}};
-  const column x = A.partialPivLu().solve(drive);
+  return A;
+}
+
+/// det A / sin(qL)^(n-1), which is entire.
+[[nodiscard]] inline std::complex<double> determinant_of(const loop_matrix& A, std::complex<double> sine) {
+  const Eigen::Index n = A.rows();
+  if (n == 0) return sine;
+  if (n == 1) return A(0, 0);
+  if (n == 2) return (A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0)) * reciprocal(sine);
+  return A.determinant() / std::pow(sine, static_cast<int>(n) - 1);
+}
+
+}  // namespace detail
+
+/// The closed loop's determinant at one frequency. `strength` scales scatterers and ends.
+[[nodiscard]] inline std::complex<double> loop_determinant(const pluck_scene& scene, std::complex<double> s, double strength = 1) {
+  const string_at string(scene, s);
+  return detail::determinant_of(detail::loop_of(scene, string, detail::moving_ends(scene), s, strength), string.sine());
+}
+
+/// Determinant and end forces; unknowns are the forces of the scatterers on the string and the speeds of the yielding ends.
+[[nodiscard]] inline loop_response close_loop(const pluck_scene& scene, double position, std::complex<double> s) {
+  const string_at string(scene, s);
+  const detail::moving_ends ends(scene);
+  const auto count = static_cast<Eigen::Index>(scene.scatterers.size()), n = count + ends.count;
+  if (n == 0) return {string.sine(), {string.end_force(0, position), string.end_force(1, position)}};
+  const detail::loop_matrix A = detail::loop_of(scene, string, ends, s, 1);
+  Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, 0, most_loops, 1> drive(n);
+  Eigen::Matrix<std::complex<double>, 2, Eigen::Dynamic, 0, 2, most_loops> out(2, n);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const scatterer& on = scene.scatterers[static_cast<std::size_t>(i)];
+    drive[i] = -on.impedance(s) * string.mobility(on.position, position);
+    for (int e = 0; e < 2; ++e) out(e, i) = string.end_force(e, on.position);
+  }
+  for (Eigen::Index m = 0; m < ends.count; ++m) {
+    drive[count + m] = scene.ends[static_cast<std::size_t>(ends[m])].admittance(s) * string.end_force(ends[m], position);
+    for (int o = 0; o < 2; ++o) out(o, count + m) = o == ends[m] ? string.own_end() : string.other_end();
+  }
+  loop_response r{detail::determinant_of(A, string.sine()), {}};
+  if (n == 1) drive *= detail::reciprocal(A(0, 0));
+  else drive = A.partialPivLu().solve(drive).eval();
   for (int e = 0; e < 2; ++e)
-    r.times_determinant[static_cast<std::size_t>(e)] =
-        r.determinant / string.sine() * (string.end_force(e, position) + (out.row(e) * x)(0));
+    r.times_determinant[static_cast<std::size_t>(e)] = r.determinant * detail::reciprocal(string.sine()) * (string.end_force(e, position) + (out.row(e) * drive)(0));
   return r;
 }
 

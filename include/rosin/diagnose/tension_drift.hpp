@@ -9,6 +9,8 @@
 
 #include <rosin/reconstruct/fine_tune.hpp>
 
+#include <boost/math/tools/minima.hpp>
+
 namespace rosin {
 
 /// One bowed take: recorded nominal newtons, and the calibration that the plucks gave.
@@ -32,6 +34,21 @@ struct tension_drift {
   return c;
 }
 
+namespace detail {
+
+/// Mean and doubt of what was found in each take; the sums of squares of delta become rms values.
+inline void summarise(tension_drift& out, const std::vector<double>& found, const std::vector<double>& weight) {
+  double sum = 0, weights = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) sum += weight[i] * found[i], weights += weight[i];
+  const double n = std::max<double>(1, static_cast<double>(found.size()));
+  out.relative = weights > 0 ? sum / weights : 0;
+  for (const double r : found) out.scatter = std::max(out.scatter, std::abs(r - out.relative));
+  out.sd = std::hypot(weights > 0 ? 1 / std::sqrt(weights) : 0, out.scatter / std::sqrt(n));
+  for (double* d : {&out.delta_before, &out.delta_after, &out.delta_moved_contact}) *d = std::sqrt(*d / n);
+}
+
+}  // namespace detail
+
 template <class Physics = full_physics>
 [[nodiscard]] tension_drift find_tension_drift(const std::vector<bowed_recording>& takes, const band& limits, double rate_Hz) {
   tension_drift out;
@@ -54,13 +71,27 @@ template <class Physics = full_physics>
     found.push_back(relative);
     weight.push_back(1 / (sd * sd));
   }
-  double sum = 0, weights = 0;
-  for (std::size_t i = 0; i < found.size(); ++i) sum += weight[i] * found[i], weights += weight[i];
-  const double n = std::max<double>(1, static_cast<double>(takes.size()));
-  out.relative = weights > 0 ? sum / weights : 0;
-  for (const double r : found) out.scatter = std::max(out.scatter, std::abs(r - out.relative));
-  out.sd = std::hypot(weights > 0 ? 1 / std::sqrt(weights) : 0, out.scatter / std::sqrt(n));
-  for (double* d : {&out.delta_before, &out.delta_after, &out.delta_moved_contact}) *d = std::sqrt(*d / n);
+  detail::summarise(out, found, weight);
+  return out;
+}
+
+/// The same for any way to reconstruct: delta(take, relative) is Eq. (12) of a take at that tension. Searched within 4 %.
+template <class Delta>
+[[nodiscard]] tension_drift search_tension_drift(std::size_t takes, Delta&& delta) {
+  tension_drift out;
+  std::vector<double> found;
+  for (std::size_t t = 0; t < takes; ++t) {
+    const auto at = [&](double relative) { return delta(t, relative); };
+    double start = 0, least = at(0);
+    out.delta_before += least * least;
+    for (int k = -10; k <= 10; ++k)  // the valley is about a hundredth wide
+      if (const double d = at(0.004 * k); d < least) least = d, start = 0.004 * k;
+    const auto [relative, after] = boost::math::tools::brent_find_minima(at, start - 0.004, start + 0.004, 20);
+    out.delta_after += after * after;
+    found.push_back(relative);
+  }
+  out.delta_moved_contact = out.delta_before;  // not tried
+  detail::summarise(out, found, std::vector<double>(found.size(), 1e10));
   return out;
 }
 

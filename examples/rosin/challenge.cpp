@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+//
+// rosin challenge: rigs in which physics is hidden, diagnosed from their folders alone, and scored.
+//
+#include "calibration_file.hpp"
+#include "challenge_rig.hpp"
+#include "challenge_score.hpp"
+#include "commands.hpp"
+#include "diagnose_rig.hpp"
+#include "progress.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+namespace tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct options {
+  std::string out, effect, shard = "1/1";
+  std::uint64_t seed = 1;
+  int count = 0, effects = 1;
+  double strength = 1, noise_dB = 0;
+  bool only_make = false, json = false;
+};
+
+struct places {
+  fs::path rigs, truth, diagnoses;
+  explicit places(const fs::path& root) : rigs{root / "rigs"}, truth{root / "truth"}, diagnoses{root / "diagnoses"} {}
+};
+
+std::string describe(const options& o) {
+  std::string out = "`rosin challenge --seed " + std::to_string(o.seed) + " --count " + std::to_string(o.count) + " --effects " + std::to_string(o.effects);
+  if (o.strength != 1) out += " --strength " + rosin::detail::figure(o.strength);
+  if (o.noise_dB > 0) out += " --noise-db " + rosin::detail::figure(o.noise_dB);
+  return out + (o.effect.empty() ? "`" : " --effect " + o.effect + "`");
+}
+
+/// Writes what is not there yet; a rig is complete once its truth is.
+std::optional<rosin::failure> make(const options& given, const places& to, std::size_t shard, std::size_t shards) {
+  std::error_code error;
+  for (const auto& folder : {to.rigs, to.truth, to.diagnoses})
+    if (!fs::create_directories(folder, error) && error) return rosin::failure{folder.string() + ": cannot be made: " + error.message()};
+  progress bar{"hiding", static_cast<std::size_t>(given.count)};
+  for (int i = 0; i < given.count; ++i, bar.step()) {
+    if (static_cast<std::size_t>(i) % shards != shard) continue;
+    const auto rig = draw_challenge({given.seed * 100000 + static_cast<std::uint64_t>(i), given.effects, given.strength, given.noise_dB, given.effect});
+    const auto truth = to.truth / (rig.name + ".json");
+    if (fs::exists(truth)) continue;
+    if (auto why = write_challenge(rig, to.rigs / rig.name, true)) return why;
+    if (auto why = save_json(truth.string(), truth_of(rig), false)) return why;
+  }
+  return std::nullopt;
+}
+
+/// Diagnoses every rig of the folder that has no diagnosis yet; a rig that cannot be diagnosed is named and counts as wrong.
+void diagnose_all(const places& at, const provenance& from, std::size_t shard, std::size_t shards) {
+  std::vector<fs::path> rigs;
+  for (const auto& entry : fs::directory_iterator(at.rigs))
+    if (fs::exists(entry.path() / "rig.toml")) rigs.push_back(entry.path());
+  std::sort(rigs.begin(), rigs.end());
+  progress bar{"diagnosing", rigs.size()};
+  for (std::size_t i = 0; i < rigs.size(); ++i, bar.step()) {
+    const auto file = at.diagnoses / (rigs[i].filename().string() + ".json");
+    if (i % shards != shard || fs::exists(file)) continue;
+    const auto start = std::chrono::steady_clock::now();
+    auto own = from;
+    json out{{"verdict", "failed"}, {"missing", json::array()}, {"fit", {{"metric", ""}, {"after", nullptr}, {"noise_floor", 0}}}};
+    const auto rig = open_rig(rigs[i].string(), own);
+    if (!rig) out["error"] = rig.error();
+    else if (const auto found = diagnose(rig->rig, own)) out = to_json(*found, own);
+    else out["error"] = found.error();
+    if (out.contains("error")) std::cerr << "rosin: " << rigs[i].string() << ": " << out["error"].get<std::string>() << '\n';
+    out["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (const auto why = save_json(file.string(), out, false)) std::cerr << "rosin: " << why->message << '\n';
+  }
+}
+
+std::vector<rig_score> score_all(const places& at) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(at.diagnoses)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<rig_score> out;
+  for (const auto& file : files) {
+    std::ifstream truth{at.truth / file.filename()}, said{file};
+    if (!truth || !said) continue;
+    const json diagnosis = json::parse(said, nullptr, false), hidden = json::parse(truth, nullptr, false);
+    if (diagnosis.is_discarded() || hidden.is_discarded()) continue;
+    out.push_back(score(hidden, diagnosis));
+    out.back().seconds = diagnosis.value("seconds", 0.0);
+  }
+  return out;
+}
+
+exit_code run(const options& given, const provenance& from) {
+  std::size_t shard = 0, shards = 1;
+  if (char slash = 0; !(std::istringstream{given.shard} >> shard >> slash >> shards) || slash != '/' || shard == 0 || shard > shards)
+    return fail("--shard " + given.shard + ": K/N with K from 1 to N is needed", given.json);
+  --shard;
+  const auto& names = hideable();
+  if (!given.effect.empty() && std::find(names.begin(), names.end(), given.effect) == names.end()) return fail("--effect " + given.effect + ": cannot be hidden", given.json);
+  const places at{given.out};
+  if (const auto why = make(given, at, shard, shards)) return fail(why->message, given.json);
+  if (given.only_make) return exit_code::ok;
+  diagnose_all(at, from, shard, shards);
+  const auto scores = score_all(at);
+  const auto page = to_markdown(scores, describe(given));
+  if (const auto why = rosin::write_file((fs::path{given.out} / "challenge.md").string(), rosin::overwrite::allow, [&](std::ostream& o) { o << page; }))
+    return fail(why->message, given.json);
+  if (given.json) print(to_json(scores));
+  else std::cout << page;
+  return exit_code::ok;
+}
+
+}  // namespace
+
+void add_challenge(CLI::App& app, exit_code& result) {
+  auto given = std::make_shared<options>();
+  CLI::App* command = app.add_subcommand("challenge", "Hide physics in simulated rigs, diagnose them blind, and score");
+  command->add_option("--out", given->out, "Folder: rigs/, truth/, diagnoses/ and the page challenge.md; what is there is used")->required()->type_name("FOLDER");
+  command->add_option("--seed", given->seed, "Of the first rig")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command->add_option("--count", given->count, "Rigs to make; 0: only what the folder holds")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command->add_option("--effects", given->effects, "Hidden in each rig")->check(CLI::Range(0, 2))->capture_default_str();
+  command->add_option("--effect", given->effect, "This one and no other")->type_name("NAME");
+  command->add_option("--strength", given->strength, "1: as in a laboratory in which one thing went wrong")->check(CLI::Range(0.001, 10.0))->capture_default_str();
+  command->add_option("--noise-db", given->noise_dB, "Peak of the first pluck over the noise; 0: drawn, 0.3 to 0.5 mN")->check(CLI::Range(0.0, 120.0))->capture_default_str();
+  command->add_option("--shard", given->shard, "The K-th of N parts: every N-th rig")->type_name("K/N")->capture_default_str();
+  command->add_flag("--only-make", given->only_make, "Make the rigs, diagnose nothing");
+  add_json_option(*command, given->json);
+  command->footer(
+      "The rigs are stepped mode by mode, with beads, fingers, supports and the contact solved for in every step; nothing of\n"
+      "that is shared with the closed forms that a diagnosis fits. A folder rigs/ with truth/NAME.json beside it is scored likewise.");
+  command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
+}
+
+}  // namespace tool

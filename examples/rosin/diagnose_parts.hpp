@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// The two halves of a diagnosis: what plucks say of string, ends, wire and sensors; and strokes, reconstructed with that.
+//
+#pragma once
+
+#include "diagnose_rig.hpp"
+
+#include <rosin/acquire/rig_values.hpp>
+#include <rosin/diagnose/contact_effects.hpp>
+#include <rosin/diagnose/pluck_diagnosis.hpp>
+#include <rosin/diagnose/tension_drift.hpp>
+
+namespace tool {
+
+/// One bowed take as the plucks' calibration and what they tell of the sensors make it.
+struct diagnosed_stroke {
+  std::string name;
+  double rate_Hz = 0, speed_m_s = 0, normal_force_N = 0;
+  rosin::calibration calibration;
+  std::array<std::vector<double>, 2> recorded_N, force_N;
+  std::vector<double> mean_N, mean_m_s;
+  rosin::bow_motion<double> motion;
+  double force_sd_N = 0, velocity_sd_m_s = 0, delta = 0;
+};
+
+[[nodiscard]] rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d);
+
+/// Each bowed take with the string, the ends and the sensors that the plucks tell of; what cannot be used is said in d.warnings.
+[[nodiscard]] std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks,
+                                                                double tension_drift, provenance& from, rig_diagnosis& d);
+[[nodiscard]] rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks);
+/// Nothing sits on the string and its ends are rigid, as far as plucks tell.
+[[nodiscard]] bool is_plain(const rosin::pluck_diagnosis& plucks);
+/// The contact as the rig file declares it.
+[[nodiscard]] rosin::contact_model declared_contact(const rosin::rig& rig);
+[[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const rosin::contact_model& model);
+
+}  // namespace tool

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose_parts.hpp"
+
+#include <rosin/calibrate/calibration.hpp>
+#include <rosin/diagnose/corrected_take.hpp>
+#include <rosin/diagnose/loaded_motion.hpp>
+#include <rosin/reconstruct/uncertainty.hpp>
+
+namespace tool {
+
+namespace {
+
+/// The fit with all that was found, as a plain calibration of the string.
+rosin::calibration calibration_with(const rosin::pluck_diagnosis& p, double declared, const rosin::rig_values& values) {
+  rosin::pluck_fit_result fit = p.declared;
+  const Eigen::Index plain = p.data.layout.size();
+  Eigen::VectorXd v = p.best.value.head(plain);
+  Eigen::Index at = plain;
+  for (const auto& e : p.best.effects) {
+    if (e.name == "bending-stiffness") v[rosin::pluck_layout::inharmonicity] += p.best.value[at];
+    if (e.name == "frequency-dependent-loss") v[rosin::pluck_layout::internal_loss] += p.best.value[at];
+    if (e.name == "air-loss") v[rosin::pluck_layout::air_loss] += p.best.value[at];
+    at += static_cast<Eigen::Index>(e.parameters.size());
+  }
+  fit.value = v;
+  if (p.best.covariance.rows() >= plain) fit.covariance = p.best.covariance.topLeftCorner(plain, plain);
+  fit.noise_N = p.best.quality.noise;
+  const double z = values.impedance_Ns_m->value;
+  return rosin::calibration_from(fit, declared, z, values.impedance_Ns_m->sd / z);
+}
+
+rosin::pluck_scene scene_of(const rosin::pluck_diagnosis& p) {
+  return rosin::scene_plucks(p.data.layout, p.data.guess.ac_coupled_Hz, p.best.effects).scene(p.best.value, 0);
+}
+
+rosin::bow_motion<double> motion_of(const diagnosed_stroke& s, const rosin::pluck_scene& scene, const rosin::band& limits) {
+  if (scene.plain_string()) return rosin::reconstructor<double>(s.calibration.at, limits, s.rate_Hz)(s.force_N[0], s.force_N[1]);
+  return rosin::reconstruct_loaded(scene, s.calibration.at, s.force_N, limits, s.rate_Hz);
+}
+
+}  // namespace
+
+std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, double tension_drift,
+                                                  provenance& from, rig_diagnosis& d) {
+  const rosin::pluck_scene scene = scene_of(plucks);
+  std::vector<diagnosed_stroke> out;
+  for (const auto& take : rig.takes) {
+    if (take.kind != rosin::take_kind::bow) continue;
+    const auto position = rig.position_of(take);
+    const auto read = read_take(rig, take, from);
+    if (!read || !position) {
+      d.warnings.push_back(take.name + ": left out: " + (read ? "its position is unknown" : read.error()));
+      continue;
+    }
+    if (rosin::has_error(read->check.findings)) {
+      for (const auto& f : read->check.findings)
+        if (f.level == rosin::severity::error) d.warnings.push_back(sentence(rig, f));
+      d.warnings.push_back(take.name + ": left out for the error above");
+      continue;
+    }
+    diagnosed_stroke s;
+    s.name = take.name, s.rate_Hz = read->signals.sample_rate_Hz;
+    s.speed_m_s = take.speed_m_s.value_or(0), s.normal_force_N = take.normal_force_N.value_or(0);
+    s.calibration = rosin::at_tension(calibration_with(plucks, *position, values), tension_drift);
+    s.recorded_N = {read->signals.near_N(), read->signals.far_N()};
+    const rosin::band limits{0.30 * s.rate_Hz, 0.45 * s.rate_Hz};
+    rosin::undo_sensors(plucks.data, plucks.best, s.recorded_N, s.rate_Hz, limits.stop_Hz);
+    for (std::size_t c = 0; c < 2; ++c) {
+      const double corner = rig.channel(c == 0 ? "near" : "far")->ac_coupled_Hz.value_or(0);
+      if (corner > 0) rosin::restore_ac_coupled(std::span(s.recorded_N[c]), corner, s.rate_Hz);
+    }
+    s.force_N = rosin::detail::calibrated(s.calibration, s.recorded_N[0], s.recorded_N[1]);
+    s.motion = motion_of(s, scene, limits);
+    if (s.motion.known.end <= s.motion.known.begin + 500) {
+      d.warnings.push_back(take.name + ": left out: too short");
+      continue;
+    }
+    for (std::size_t i = 0; i < s.motion.force_near_N.size(); ++i) {
+      s.mean_N.push_back(0.5 * (s.motion.force_near_N[i] + s.motion.force_far_N[i]));
+      s.mean_m_s.push_back(0.5 * (s.motion.velocity_near_m_s[i] + s.motion.velocity_far_m_s[i]));
+    }
+    const auto slopes = rosin::sensitivity<rosin::full_physics>(s.calibration, s.force_N[0], s.force_N[1], limits, s.rate_Hz);
+    const std::array<double, 2> noise{s.calibration.noise_N[0] / s.calibration.gain[0], s.calibration.noise_N[1] / s.calibration.gain[1]};
+    const auto sd = rosin::uncertainty<rosin::full_physics>(s.calibration, s.motion, slopes, noise, limits, s.rate_Hz);
+    const auto middle = (s.motion.known.begin + s.motion.known.end) / 2;
+    s.force_sd_N = sd.force_sd_N[middle], s.velocity_sd_m_s = sd.velocity_sd_m_s[middle];
+    s.delta = rosin::consistency_delta(s.motion.force_near_N, s.motion.force_far_N);
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks) {
+  const double rate = strokes.front().rate_Hz;
+  const rosin::band limits{0.30 * rate, 0.45 * rate};
+  const rosin::pluck_scene scene = scene_of(plucks);
+  if (!scene.plain_string())
+    return rosin::search_tension_drift(strokes.size(), [&](std::size_t i, double relative) {
+      diagnosed_stroke s = strokes[i];
+      s.calibration = rosin::at_tension(s.calibration, relative);
+      const auto motion = motion_of(s, scene, limits);
+      return rosin::consistency_delta(motion.force_near_N, motion.force_far_N);
+    });
+  std::vector<rosin::bowed_recording> takes;
+  for (const auto& s : strokes) takes.push_back({s.recorded_N[0], s.recorded_N[1], s.calibration});
+  return rosin::find_tension_drift(takes, limits, rate);
+}
+
+bool is_plain(const rosin::pluck_diagnosis& plucks) { return rosin::string_is_plain(plucks.best.effects); }
+
+rosin::contact_model declared_contact(const rosin::rig& rig) {
+  rosin::contact_model model;
+  if (rig.torsion) model.torsion = rosin::torsion_values{rig.torsion->speed_ratio, rig.torsion->impedance_ratio, rig.torsion->q};
+  if (rig.model && rig.model->friction) model.law = static_cast<rosin::contact_law>(*rig.model->friction);
+  if (rig.model)
+    for (const auto& name : rig.model->physics)
+      if (name != "torsion") model.included.push_back(name);
+  return model;
+}
+
+rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const rosin::contact_model& model) {
+  std::vector<rosin::contact_take> takes;
+  for (const auto& s : strokes) {
+    rosin::contact_take t{s.name, s.mean_N, s.mean_m_s, s.motion.velocity_near_m_s, s.motion.velocity_far_m_s};
+    if (plain_string) t.near_N = s.force_N[0], t.far_N = s.force_N[1];  // a contact's width can be told on a plain string only
+    t.rate_Hz = s.rate_Hz, t.rod_speed_m_s = s.speed_m_s, t.normal_force_N = s.normal_force_N;
+    t.delay_s = s.calibration.at.delay_s, t.stiffness_s2 = s.calibration.at.stiffness_s2;
+    t.inverse_q = s.calibration.at.loss.inverse_q(0.5 / (t.delay_s[0] + t.delay_s[1]));
+    t.impedance_Ns_m = s.calibration.at.impedance_Ns_m, t.length_m = rig.string.length_m.value_or(0);
+    t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.edge_Hz = 0.45 * s.rate_Hz;
+    takes.push_back(t);
+  }
+  return rosin::contact_hypotheses(takes, model);
+}
+
+}  // namespace tool

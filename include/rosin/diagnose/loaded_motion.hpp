@@ -1,0 +1,146 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Force and velocity under the bow of a string that carries loads and ends on supports that yield, once plucks have told what
+// these are. All follows from the force on an end and the motion of that end, outwards to the bow, without solving for anything
+// (specification sheet 6.0, lines 1 and 2): with V = Z Y F the end's motion, the j-th load on the way feels and returns
+//
+//     Z v(x_j) = F sinh(gamma x_j) + V cosh(gamma x_j) - sum_(i<j) g_i sinh(gamma (x_j - x_i)) + N g_j,    g_j = -(Z_s / Z) Z v(x_j),
+//
+// N = -i (k / kappa) / (2 G Z_w / Z) being its own near field,
+//
+// with d = x_b - x_j every load between end and bow changes what a plain string would say of the bow by
+//
+//     this side's force:  -g e^(gamma d),    the other side's:  -g e^(-gamma d),    this side's velocity:  -g sinh(gamma d) / (G Z_w).
+//
+// Whole records, in the frequency domain. Stiffness enters as in bow_point_transfer.hpp; a near field is felt by its own load only.
+//
+#pragma once
+
+#include <rosin/diagnose/pluck_scene.hpp>
+#include <rosin/math/fft.hpp>
+#include <rosin/reconstruct/end_motion.hpp>
+#include <rosin/reconstruct/reconstructor.hpp>
+
+#include <algorithm>
+
+namespace rosin {
+
+namespace detail {
+
+/// A record between held ends, in the frequency domain.
+class held_record {
+public:
+  held_record(std::size_t samples, std::size_t pad) : samples_{samples}, pad_{pad}, size_{fast_size(samples + 2 * pad)}, fft_(size_) {}
+
+  [[nodiscard]] std::size_t bins() const { return size_ / 2 + 1; }
+  [[nodiscard]] double frequency_Hz(std::size_t k, double rate_Hz) const { return static_cast<double>(k) * rate_Hz / static_cast<double>(size_); }
+  [[nodiscard]] std::vector<std::complex<double>> spectrum(std::span<const double> x) {
+    std::vector<double> wide(size_);
+    for (std::size_t i = 0; i < size_; ++i) wide[i] = x[std::min(samples_ - 1, i < pad_ ? 0 : i - pad_)];
+    for (std::size_t i = samples_ + pad_; i < size_; ++i) {  // back to where it begins, gently
+      const double u = static_cast<double>(i - samples_ - pad_) / static_cast<double>(size_ - samples_ - pad_);
+      wide[i] += (wide[0] - x.back()) * 0.5 * (1 - std::cos(std::numbers::pi * u));
+    }
+    std::vector<std::complex<double>> out(bins());
+    fft_.forward(wide.data(), out.data());
+    return out;
+  }
+  [[nodiscard]] std::vector<double> record(std::vector<std::complex<double>> spectrum) {
+    std::vector<double> wide(size_);
+    fft_.inverse(spectrum.data(), wide.data());
+    return {wide.begin() + static_cast<std::ptrdiff_t>(pad_), wide.begin() + static_cast<std::ptrdiff_t>(pad_ + samples_)};
+  }
+
+private:
+  std::size_t samples_, pad_, size_;
+  eigen_fft<double> fft_;
+};
+
+/// What the loads of one side add to this side's force, to the other side's, and to the velocities, at one frequency.
+struct load_echo {
+  std::complex<double> own_force, other_force, velocity, near_field;  ///< the last: to both velocities
+};
+
+/// `loads`: on this side, outwards from the end, positions as travel times from it.
+[[nodiscard]] inline load_echo echo_of_loads(const std::vector<std::pair<double, scatterer>>& loads, double to_bow_s, const bow_point& at, double f_Hz, std::complex<double> force,
+                                             std::complex<double> moved) {
+  using complex = std::complex<double>;
+  const double w = 2 * std::numbers::pi * f_Hz, G = force_factor(w, at.stiffness_s2), wave = wave_impedance_ratio(w, at.stiffness_s2);
+  const complex gamma = propagation_rate(f_Hz, at.stiffness_s2, at.loss);
+  const complex dent(0, -near_field_ratio(w, at.stiffness_s2) / (2 * wave * G));  // the near field under a load, Z v / g
+  load_echo out{};
+  std::vector<std::pair<double, complex>> returned;
+  for (const auto& [place, load] : loads) {
+    complex zv = force * std::sinh(gamma * place) / wave + moved * std::cosh(gamma * place);
+    for (const auto& [before, g] : returned) zv -= g * std::sinh(gamma * (place - before)) / (G * wave);
+    const complex z = load.impedance({0, w}), g = -z * zv / (1.0 + z * dent), onwards = std::exp(gamma * (to_bow_s - place));
+    returned.emplace_back(place, g);
+    out.own_force -= g * onwards;
+    out.other_force -= g / onwards;
+    out.velocity -= g * (onwards - 1.0 / onwards) / (2 * G * wave * at.impedance_Ns_m);
+  }
+  out.near_field = dent / at.impedance_Ns_m * 0.5 * (out.own_force + out.other_force);
+  return out;
+}
+
+/// Adds the echoes of all loads to a motion that was reconstructed without them.
+inline void add_echoes(const std::vector<scatterer>& loads, const bow_point& at, const std::array<std::vector<double>, 2>& force_N,
+                       const std::array<std::vector<double>, 2>& moved_N, const band& limits, double rate_Hz, bow_motion<double>& motion) {
+  const double whole = at.delay_s[0] + at.delay_s[1];
+  std::array<std::vector<std::pair<double, scatterer>>, 2> on_side;
+  for (const scatterer& load : loads) {
+    const double place = load.position * whole;
+    if (place < at.delay_s[0]) on_side[0].emplace_back(place, load);
+    else on_side[1].emplace_back(whole - place, load);
+  }
+  held_record record(force_N[0].size(), 8192);
+  std::array<std::vector<std::complex<double>>, 4> change;
+  for (auto& c : change) c.resize(record.bins());
+  for (std::size_t side = 0; side < 2; ++side) {
+    auto& mine = on_side[side];
+    if (mine.empty()) continue;
+    std::sort(mine.begin(), mine.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    const auto force = record.spectrum(force_N[side]);
+    const auto moved = moved_N[side].empty() ? std::vector<std::complex<double>>(record.bins()) : record.spectrum(moved_N[side]);
+    for (std::size_t k = 1; k < record.bins(); ++k) {
+      const double f = record.frequency_Hz(k, rate_Hz);
+      if (f >= limits.stop_Hz) break;
+      const load_echo e = echo_of_loads(mine, at.delay_s[side], at, f, limits(f) * force[k], limits(f) * moved[k]);
+      change[side][k] += e.own_force, change[1 - side][k] += e.other_force;
+      change[2 + side][k] += e.velocity + e.near_field, change[3 - side][k] += e.near_field;
+    }
+  }
+  const std::array<std::vector<double>*, 4> rows{&motion.force_near_N, &motion.force_far_N, &motion.velocity_near_m_s, &motion.velocity_far_m_s};
+  for (std::size_t p = 0; p < 4; ++p) {
+    const auto more = record.record(std::move(change[p]));
+    for (std::size_t i = 0; i < more.size(); ++i) (*rows[p])[i] += more[i];
+  }
+}
+
+}  // namespace detail
+
+/// Reconstruction with the loads and the yielding ends of a scene; forces in newtons. Modes of the ends count, nothing else of them.
+[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N, const band& limits,
+                                                           double rate_Hz) {
+  std::array<std::vector<double>, 2> moved;
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (scene.ends[e].modes.empty()) continue;
+    modal_termination end;
+    for (const yielding_mode& m : scene.ends[e].modes) end.modes.push_back({m.frequency_Hz, m.q, m.per_mass_per_s});
+    moved[e] = motion_of_end(end, force_N[e], limits, rate_Hz).times_impedance_N;
+  }
+  bow_motion<double> motion;
+  if (moved[0].empty() && moved[1].empty()) {
+    motion = reconstructor<double>(at, limits, rate_Hz)(force_N[0], force_N[1]);
+  } else {
+    auto both = moved;
+    for (auto& m : both) m.resize(force_N[0].size(), 0.0);
+    motion = reconstructor<double, with_moving_ends<full_physics>>(at, limits, rate_Hz)(
+        end_signals<double, with_moving_ends<full_physics>>{force_N[0], force_N[1], both[0], both[1]});
+  }
+  if (!scene.scatterers.empty()) detail::add_echoes(scene.scatterers, at, force_N, moved, limits, rate_Hz, motion);
+  return motion;
+}
+
+}  // namespace rosin

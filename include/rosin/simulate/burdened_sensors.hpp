@@ -1,0 +1,74 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What faulty sensors make of the forces on the two ends, step by step, before a converter samples them:
+//
+//     quadratic share -> the sensor's own resonance -> leakage between the channels -> the far channel comes late
+//
+// The resonance w0^2 / (s^2 + s w0/q + w0^2) is stepped exactly for a force that is straight within a step; the delay is a
+// cubic through four steps. Gain, AC coupling, hum, noise and rounding are the converter's (converter.hpp).
+//
+#pragma once
+
+#include <rosin/simulate/modal_bank.hpp>
+
+#include <algorithm>
+
+namespace rosin {
+
+struct sensor_faults {
+  std::array<double, 2> quadratic_per_N{}, resonance_Hz{}, resonance_q{10, 10};  ///< near, far; resonance 0: none
+  double crosstalk = 0;  ///< share of each channel in the other
+  double skew_s = 0;     ///< the far channel comes late by this
+};
+
+namespace detail {
+
+inline void ring_along(std::vector<double>& x, double frequency_Hz, double q, double step_s) {
+  constexpr double pi = 3.14159265358979323846;
+  const double w = 2 * pi * frequency_Hz;
+  const string_mode mode{1, w, 1 / q, 1 / (w * w), 0};  // a spring of 1: displacement = the output
+  const auto p = mode.pole();
+  const auto b = (1.0 - std::complex<double>{0, 1} * p.real() / p.imag()) / mode.mass_kg;
+  const auto r = respond_over_step(p, step_s);
+  const double from_re = p.real() / (w * w), from_im = p.imag() / (w * w);
+  std::complex<double> free{0, x.empty() ? 0 : x.front() / from_im};
+  free -= x.empty() ? 0.0 : b * r.end * x.front();
+  for (double& sample : x) {
+    const auto now = free + b * r.end * sample;
+    free = r.decay * now + b * r.begin * sample;
+    sample = from_re * now.real() + from_im * now.imag();
+  }
+}
+
+/// x(t - delay), |delay| below the record's length; the ends are held.
+[[nodiscard]] inline std::vector<double> later(const std::vector<double>& x, double delay_steps) {
+  std::vector<double> out(x.size());
+  const double whole = std::floor(-delay_steps);
+  const double u = -delay_steps - whole;
+  const auto at = [&](double n) { return x[static_cast<std::size_t>(std::clamp(n, 0.0, static_cast<double>(x.size() - 1)))]; };
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    const double i = static_cast<double>(n) + whole, a = at(i - 1), b = at(i), c = at(i + 1), d = at(i + 2);
+    out[n] = -u * (u - 1) * (u - 2) / 6 * a + (u + 1) * (u - 1) * (u - 2) / 2 * b - (u + 1) * u * (u - 2) / 2 * c + (u + 1) * u * (u - 1) / 6 * d;
+  }
+  return out;
+}
+
+}  // namespace detail
+
+inline void disturb(std::array<std::vector<double>, 2>& end_N, const sensor_faults& faults, double step_s) {
+  for (std::size_t c = 0; c < 2; ++c) {
+    if (const double a = faults.quadratic_per_N[c]; a != 0)
+      for (double& f : end_N[c]) f += a * f * f;
+    if (faults.resonance_Hz[c] > 0) detail::ring_along(end_N[c], faults.resonance_Hz[c], faults.resonance_q[c], step_s);
+  }
+  if (faults.crosstalk != 0)
+    for (std::size_t n = 0; n < end_N[0].size(); ++n) {
+      const double near = end_N[0][n];
+      end_N[0][n] += faults.crosstalk * end_N[1][n];
+      end_N[1][n] += faults.crosstalk * near;
+    }
+  if (faults.skew_s != 0) end_N[1] = detail::later(end_N[1], faults.skew_s / step_s);
+}
+
+}  // namespace rosin

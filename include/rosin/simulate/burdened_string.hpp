@@ -1,0 +1,267 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// A string that carries what an ideal rig leaves out: point loads (beads, fingers), supports that yield, and a tension that
+// its own motion raises. With u_e the displacement of support e,
+//
+//     y(x, t) = sum q_n sin(k_n x) + (1 - x/L) u_1 + (x/L) u_2,
+//     m (q_n'' + (w_n/Q_n) q_n' + w_n^2 q_n) = sum f_p sin(k_n x_p) - a_n1 u_1'' - a_n2 u_2'',   a_n = mu L / (n pi) (+-1),
+//     M (u'' + (w_s/Q_s) u' + w_s^2 u) = F_end = sum (T k_n + B k_n^3) q_n - (T/L) (u - u_other).
+//
+// Unknown in every step besides the contacts' forces are the loads' f and g = -u'' of the supports; whatever is linear in
+// them goes into one small matrix that is inverted beforehand:
+//
+//     load:     f + alpha v(f, g) = -beta,    alpha = 3 M / 2h + R + K h / 2,    v' = (3 v - 4 v_0 + v_-1) / 2h
+//     support:  (M + c h/2 + (K + T/L) h^2/6) g + F_end(f, g) = c (u_0' - h g_0/2) + (K + T/L) (u_0 + h u_0' - h^2 g_0/3).
+//
+// Nothing here is shared with the closed forms that a diagnosis fits.
+//
+#pragma once
+
+#include <rosin/simulate/port_bank.hpp>
+
+#include <utility>
+
+namespace rosin {
+
+/// A lump on the string: mass, damper and spring in parallel.
+struct point_load {
+  double position = 0.5;  ///< distance from the near end / length
+  double mass_kg = 0, resistance_Ns_m = 0, stiffness_N_m = 0;
+};
+
+/// A support under an end of the string; none where the mass is 0.
+struct yielding_support {
+  double mass_kg = 0, frequency_Hz = 0, quality = 1;
+};
+
+/// All that the string itself carries.
+struct string_burden {
+  std::vector<point_load> loads{};
+  std::array<yielding_support, 2> supports{};  ///< near, far
+  double axial_stiffness_N = 0;                ///< E A; 0: the tension is steady
+};
+
+class burdened_string {
+public:
+  /// Forces may act on the string at `contacts` (distance from the near end / length).
+  burdened_string(const modal_rig& rig, const string_burden& burden, const std::vector<double>& contacts, double mode_limit_Hz, double step_s)
+      : stretch_{rig.string.tension_N / rig.string.length_m}, step_{step_s}, contacts_{static_cast<int>(contacts.size())},
+        bank_{rig, burden.axial_stiffness_N, mode_limit_Hz, step_s}, positions_{contacts} {
+    for (const auto& load : burden.loads) loads_.push_back({load}), positions_.push_back(load.position);
+    for (int e = 0; e < 2; ++e)
+      if (const auto& s = burden.supports[static_cast<std::size_t>(e)]; s.mass_kg > 0) ends_.push_back({s, e});
+    set_ports(rig);
+    set_system();
+    read();
+  }
+
+  /// At rest under these forces at the contacts.
+  void rest_under(const Eigen::VectorXd& force) {
+    const int n = unknowns(), l = load_count();
+    const auto miss = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& f) {  // x: the loads' forces, the supports' displacements
+      const Eigen::VectorXd y = deflection(f, x);
+      Eigen::VectorXd r(n);
+      for (int i = 0; i < l; ++i) r[i] = x[i] + loads_[static_cast<std::size_t>(i)].load.stiffness_N_m * y[contacts_ + i];
+      for (int i = l; i < n; ++i) r[i] = end(i - l).stiffness() * x[i] - y[contacts_ + i];
+      return r;
+    };
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    if (n > 0) {
+      const Eigen::VectorXd none = Eigen::VectorXd::Zero(contacts_), base = miss(x, force);
+      Eigen::MatrixXd a(n, n);
+      for (int i = 0; i < n; ++i) a.col(i) = miss(Eigen::VectorXd::Unit(n, i), none);
+      x = a.partialPivLu().solve(-base);
+    }
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(contacts_ + n);
+    all << force, x.head(l), Eigen::VectorXd::Zero(n - l);
+    const Eigen::VectorXd y = deflection(force, x);
+    for (int i = 0; i < l; ++i) loads_[static_cast<std::size_t>(i)].y = y[contacts_ + i];
+    for (int i = l; i < n; ++i) ends_[static_cast<std::size_t>(i - l)].u = x[i];
+    bank_.rest_under(all);
+    last_ = all.head(points());
+    read();
+  }
+
+  /// Velocities that the contacts would have at the end of this step without force there; centre and twist together.
+  [[nodiscard]] Eigen::VectorXd free_velocity() {
+    if (unknowns() == 0) return free_.head(contacts_);
+    answer_ = solve_ * known_side();
+    return free_.head(contacts_) + across_ * answer_;
+  }
+  /// Their response to forces at the contacts in the same step, m/(N s).
+  [[nodiscard]] const Eigen::MatrixXd& mobility() const noexcept { return contact_mobility_; }
+
+  struct reading {
+    Eigen::Vector2d end_N;                 ///< forces on near and far end
+    Eigen::VectorXd surface_m_s, twist_m_s;  ///< at the contacts; the centre moves with the difference
+  };
+  /// After free_velocity(): ends the step with these forces at the contacts and begins the next.
+  reading advance(const Eigen::VectorXd& force) {
+    Eigen::VectorXd all(contacts_ + unknowns());
+    all.head(contacts_) = force;
+    if (unknowns() > 0) all.tail(unknowns()) = answer_ - solve_ * (drive_ * force);
+    const Eigen::VectorXd v = free_ + mobility_ * all;
+    move(v, all);
+    reading out{free_end_ + end_gain_ * all, v.head(contacts_), Eigen::VectorXd(contacts_)};
+    Eigen::Vector2d u = Eigen::Vector2d::Zero();
+    for (const auto& m : ends_) u[m.side] = m.u;
+    out.end_N += stretch_ * Eigen::Vector2d{u[1] - u[0], u[0] - u[1]};
+    for (int i = 0; i < contacts_; ++i) out.twist_m_s[i] = bank_.twist(i, all);
+    bank_.advance(all);
+    last_ = all.head(points());
+    read();
+    return out;
+  }
+
+private:
+  struct moving_load {
+    point_load load;
+    double v = 0, v_before = 0, y = 0;
+  };
+  struct moving_end {
+    yielding_support support;
+    int side = 0;
+    double u = 0, v = 0, g = 0;  ///< displacement, velocity, minus acceleration
+    [[nodiscard]] double omega() const noexcept { return 2 * 3.14159265358979323846 * support.frequency_Hz; }
+    [[nodiscard]] double stiffness() const noexcept { return support.mass_kg * omega() * omega(); }
+    [[nodiscard]] double damping() const noexcept { return support.mass_kg * omega() / support.quality; }
+    [[nodiscard]] double ahead(double h) const noexcept { return u + h * v - h * h * g / 3; }
+  };
+
+  [[nodiscard]] int points() const noexcept { return static_cast<int>(positions_.size()); }
+  [[nodiscard]] int load_count() const noexcept { return static_cast<int>(loads_.size()); }
+  [[nodiscard]] int unknowns() const noexcept { return load_count() + static_cast<int>(ends_.size()); }
+  [[nodiscard]] const moving_end& end(int i) const noexcept { return ends_[static_cast<std::size_t>(i)]; }
+  /// How far point i rises for 1 m at the end.
+  [[nodiscard]] double lift(int i, const moving_end& e) const noexcept {
+    const double x = positions_[static_cast<std::size_t>(i)];
+    return e.side == 0 ? 1 - x : x;
+  }
+  [[nodiscard]] double alpha(const point_load& p) const noexcept { return 1.5 * p.mass_kg / step_ + p.resistance_Ns_m + p.stiffness_N_m * step_ / 2; }
+
+  void set_ports(const modal_rig& rig) {
+    const int p = points(), all = contacts_ + unknowns();
+    Eigen::MatrixXd shape(bank_.size(), all);
+    for (int j = 0; j < p; ++j) shape.col(j) = bank_.at(positions_[static_cast<std::size_t>(j)], j < contacts_);
+    for (int j = p; j < all; ++j) shape.col(j) = bank_.at_end(end(j - p).side);
+    bank_.set_ports(std::move(shape));
+    set_left_out(rig);
+    mobility_ = bank_.mobility;
+    end_gain_ = bank_.end_gain + rest_end_;
+    for (int i = 0; i < p; ++i) {
+      mobility_(i, i) += rest_[i] / step_;
+      for (int j = p; j < all; ++j) mobility_(i, j) -= step_ / 2 * lift(i, end(j - p));
+    }
+    last_ = Eigen::VectorXd::Zero(p);
+  }
+
+  /// Modes above the limit answer quasi-statically: compliance at the points, share of the forces at the ends.
+  void set_left_out(const modal_rig& rig) {
+    const int p = points(), all = contacts_ + unknowns();
+    const double string_mass = rig.string.linear_density_kg_m() * rig.string.length_m;
+    rest_ = Eigen::VectorXd::Zero(p), rest_end_ = -bank_.share;
+    for (int j = 0; j < p; ++j) {
+      const double x = positions_[static_cast<std::size_t>(j)];
+      rest_end_.col(j) += Eigen::Vector2d{1 - x, x};
+      rest_[j] = static_compliance_m_N(rig.string, x) - bank_.compliance(j, j);
+      if (j >= contacts_ || !rig.torsion.present()) continue;
+      rest_[j] += x * (1 - x) / (rig.torsion.impedance_ratio * rig.torsion.speed_ratio * stretch_) - bank_.twist_compliance(j, j);
+    }
+    for (int j = p; j < all; ++j) {
+      const int side = end(j - p).side;
+      rest_end_(side, j) += string_mass / 3, rest_end_(1 - side, j) += string_mass / 6;
+    }
+  }
+
+  void set_system() {
+    const int l = load_count(), n = unknowns(), c = contacts_;
+    contact_mobility_ = mobility_.topLeftCorner(c, c);
+    if (n == 0) return;
+    across_ = mobility_.block(0, c, c, n);
+    Eigen::MatrixXd a(n, n);
+    drive_.setZero(n, c);
+    for (int i = 0; i < l; ++i) {
+      const double by = alpha(loads_[static_cast<std::size_t>(i)].load);
+      a.row(i) = by * mobility_.block(c + i, c, 1, n);
+      a(i, i) += 1;
+      drive_.row(i) = by * mobility_.block(c + i, 0, 1, c);
+    }
+    for (int i = l; i < n; ++i) {
+      const auto& e = end(i - l);
+      a.row(i) = end_gain_.block(e.side, c, 1, n);
+      a(i, i) += e.support.mass_kg + e.damping() * step_ / 2 + (e.stiffness() + stretch_) * step_ * step_ / 6;
+      if (n - l == 2) a(i, 2 * l + 1 - i) -= stretch_ * step_ * step_ / 6;
+      drive_.row(i) = end_gain_.block(e.side, 0, 1, c);
+    }
+    solve_ = a.inverse();
+    contact_mobility_ -= across_ * solve_ * drive_;
+  }
+
+  [[nodiscard]] Eigen::VectorXd known_side() const {
+    const int l = load_count(), n = unknowns();
+    Eigen::VectorXd b(n);
+    for (int i = 0; i < l; ++i) {
+      const auto& [load, v, before, y] = loads_[static_cast<std::size_t>(i)];
+      b[i] = -alpha(load) * free_[contacts_ + i] - load.mass_kg * (before - 4 * v) / (2 * step_) - load.stiffness_N_m * (y + step_ * v / 2);
+    }
+    for (int i = l; i < n; ++i) {
+      const auto& e = end(i - l);
+      b[i] = e.damping() * (e.v - step_ * e.g / 2) + (e.stiffness() + stretch_) * e.ahead(step_) - free_end_[e.side];
+      if (n - l == 2) b[i] -= stretch_ * end(1 - (i - l)).ahead(step_);
+    }
+    return b;
+  }
+
+  void move(const Eigen::VectorXd& v, const Eigen::VectorXd& force) {
+    for (int i = 0; i < load_count(); ++i) {
+      auto& m = loads_[static_cast<std::size_t>(i)];
+      const double now = v[contacts_ + i];
+      m.y += step_ * (m.v + now) / 2;
+      m.v_before = std::exchange(m.v, now);
+    }
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+      auto& m = ends_[i];
+      const double g = force[points() + static_cast<Eigen::Index>(i)];
+      m.u += step_ * m.v - step_ * step_ * (m.g / 3 + g / 6);
+      m.v -= step_ * (m.g + g) / 2;
+      m.g = g;
+    }
+  }
+
+  /// The free state at the end of the coming step: modes, what the modes left out take back, and where the ends carry the string.
+  void read() {
+    bank_.read_free(free_, free_end_);
+    for (int i = 0; i < points(); ++i) {
+      free_[i] -= rest_[i] / step_ * last_[i];
+      for (const auto& e : ends_) free_[i] += lift(i, e) * (e.v - step_ * e.g / 2);
+    }
+  }
+
+  /// Statically: rise of the points, then force on the yielding ends less nothing but the string's.
+  [[nodiscard]] Eigen::VectorXd deflection(const Eigen::VectorXd& force, const Eigen::VectorXd& x) const {
+    const int p = points(), n = unknowns(), l = load_count();
+    Eigen::VectorXd f(p), y(contacts_ + n);
+    f << force, x.head(l);
+    y.head(p) = bank_.compliance.topLeftCorner(p, p) * f + rest_.cwiseProduct(f);
+    for (int i = 0; i < p; ++i)
+      for (int e = l; e < n; ++e) y[i] += lift(i, end(e - l)) * x[e];
+    for (int e = l; e < n; ++e) {
+      y[contacts_ + e] = -stretch_ * (x[e] - (n - l == 2 ? x[2 * l + 1 - e] : 0.0));
+      for (int i = 0; i < p; ++i) y[contacts_ + e] += lift(i, end(e - l)) * f[i];
+    }
+    return y;
+  }
+
+  double stretch_, step_;
+  int contacts_;
+  port_bank bank_;
+  std::vector<double> positions_;
+  std::vector<moving_load> loads_;
+  std::vector<moving_end> ends_;
+  Eigen::MatrixXd mobility_, end_gain_, rest_end_, solve_, across_, drive_, contact_mobility_;
+  Eigen::VectorXd rest_, free_, last_, answer_;
+  Eigen::Vector2d free_end_ = Eigen::Vector2d::Zero();
+};
+
+}  // namespace rosin

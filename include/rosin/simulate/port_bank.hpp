@@ -1,0 +1,133 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Modes stepped exactly as in modal_bank (forces straight within a step), with ports of any shape: points of the string, or
+// the inertia that a moving end lends it. Asked for, the string's own motion raises its tension (Kirchhoff and Carrier),
+//
+//     T + (E A / 4) sum k_n^2 q_n^2,
+//
+// a force on every mode that is carried on to the end of the step from what the modes do at its beginning.
+//
+#pragma once
+
+#include <rosin/simulate/modal_bank.hpp>
+
+#include <Eigen/Dense>
+
+namespace rosin {
+
+class port_bank {
+public:
+  port_bank(const modal_rig& rig, double axial_stiffness_N, double limit_Hz, double step_s)
+      : length_{rig.string.length_m}, axial_{axial_stiffness_N}, step_{step_s} {
+    auto modes = transverse_modes(rig.string, limit_Hz);
+    transverse_ = static_cast<Eigen::Index>(modes.size());
+    const auto turning = torsional_modes(rig, limit_Hz);
+    modes.insert(modes.end(), turning.begin(), turning.end());
+    const auto n = static_cast<Eigen::Index>(modes.size());
+    for (auto* a : {&mass, &omega, &number, &re_, &im_, &own_, &turn_re_, &turn_im_, &push_re_, &push_im_, &once_re_, &once_im_, &q_re_, &q_im_, &k_}) a->setZero(n);
+    end_.setZero(n, 2), end_damping_.setZero(n);
+    for (Eigen::Index i = 0; i < n; ++i) set_mode(i, modes[static_cast<std::size_t>(i)], rig.damping == damping_convention::kelvin_voigt && i < transverse_);
+  }
+
+  Eigen::ArrayXd mass, omega, number;  ///< of every mode, transverse first
+
+  [[nodiscard]] Eigen::Index size() const noexcept { return mass.size(); }
+  [[nodiscard]] Eigen::Index transverse() const noexcept { return transverse_; }
+  /// sin(k_n x) of all modes, or of the transverse ones alone.
+  [[nodiscard]] Eigen::VectorXd at(double position, bool turns) const {
+    Eigen::VectorXd s = Eigen::VectorXd::Zero(size());
+    for (Eigen::Index i = 0; i < (turns ? size() : transverse_); ++i) s[i] = std::sin(pi * std::fmod(number[i] * position, 2.0));
+    return s;
+  }
+  /// Inertia that an end lends to the transverse modes when it moves: the integral of mu (1 - x/L) sin, or of mu (x/L) sin.
+  [[nodiscard]] Eigen::VectorXd at_end(int side) const {
+    Eigen::VectorXd s = Eigen::VectorXd::Zero(size());
+    for (Eigen::Index i = 0; i < transverse_; ++i)
+      s[i] = (side == 1 && static_cast<int>(number[i]) % 2 == 0 ? -2 : 2) * mass[i] / (number[i] * pi);
+    return s;
+  }
+
+  void set_ports(Eigen::MatrixXd shape) {
+    shape_ = std::move(shape);
+    mobility = shape_.transpose() * once_re_.matrix().asDiagonal() * shape_;
+    end_gain = end_.transpose() * (felt(once_re_, once_im_)).matrix().asDiagonal() * shape_;
+    const Eigen::ArrayXd give = 1 / (mass * omega.square());
+    compliance = shape_.topRows(transverse_).transpose() * give.head(transverse_).matrix().asDiagonal() * shape_.topRows(transverse_);
+    twist_compliance = shape_.bottomRows(size() - transverse_).transpose() * give.tail(size() - transverse_).matrix().asDiagonal() * shape_.bottomRows(size() - transverse_);
+    share = end_.transpose() * give.matrix().asDiagonal() * shape_;
+  }
+
+  Eigen::MatrixXd mobility;                      ///< velocities at the ports for forces at the end of the same step
+  Eigen::MatrixXd end_gain;                      ///< forces on the ends for the same
+  Eigen::MatrixXd compliance, twist_compliance;  ///< static, of these modes only
+  Eigen::MatrixXd share;                         ///< static forces on the ends, of these modes only
+
+  /// Velocities at the ports and forces on the ends at the end of the step under way if no force acts there.
+  void read_free(Eigen::VectorXd& velocity, Eigen::Vector2d& end) const {
+    const Eigen::ArrayXd re = re_ + once_re_ * own_;
+    velocity = shape_.transpose() * re.matrix();
+    end = end_.transpose() * felt(re, im_ + once_im_ * own_).matrix();
+    if (axial_ > 0) end += pull_;
+  }
+  /// Of the twist alone under these forces.
+  [[nodiscard]] double twist(Eigen::Index port, const Eigen::VectorXd& force) const {
+    const auto turning = size() - transverse_;
+    return (shape_.col(port).tail(turning).array() * (re_.tail(turning) + once_re_.tail(turning) * (shape_.bottomRows(turning) * force).array())).sum();
+  }
+  void advance(const Eigen::VectorXd& force) {
+    const Eigen::ArrayXd drive = (shape_ * force).array() + own_;
+    if (axial_ > 0) raise_tension(re_ + once_re_ * drive, im_ + once_im_ * drive);
+    const Eigen::ArrayXd re = turn_re_ * re_ - turn_im_ * im_ + push_re_ * drive;
+    im_ = turn_im_ * re_ + turn_re_ * im_ + push_im_ * drive;
+    re_ = re;
+  }
+  /// At rest under these forces.
+  void rest_under(const Eigen::VectorXd& force) {
+    const Eigen::ArrayXd f = (shape_ * force).array(), stiffness = mass * omega.square();
+    own_.setZero(), pull_.setZero();
+    Eigen::ArrayXd q = f / stiffness;
+    for (int i = 0; i < 50 && axial_ > 0; ++i) {  // the tension rises by a few per mille: each turn gains as many digits
+      raise_tension(Eigen::ArrayXd::Zero(size()), q / q_im_);
+      q = (f + own_) / stiffness;
+    }
+    // A step under a steady force changes nothing: the free state is the state less what the force adds at the step's end.
+    re_ = -once_re_ * (f + own_);
+    im_ = q / q_im_ - once_im_ * (f + own_);
+  }
+
+private:
+  static constexpr double pi = 3.14159265358979323846;
+
+  void set_mode(Eigen::Index i, const string_mode& m, bool in_stress) {
+    const auto p = m.pole();
+    const auto b = (1.0 - std::complex<double>{0, 1} * p.real() / p.imag()) / m.mass_kg;
+    const auto r = respond_over_step(p, step_);
+    const auto push = b * (r.decay * r.end + r.begin), once = b * r.end;
+    mass[i] = m.mass_kg, omega[i] = m.omega_rad_s, number[i] = m.number;
+    k_[i] = i < transverse_ ? m.number * pi / length_ : 0;
+    turn_re_[i] = r.decay.real(), turn_im_[i] = r.decay.imag();
+    push_re_[i] = push.real(), push_im_[i] = push.imag();
+    once_re_[i] = once.real(), once_im_[i] = once.imag();
+    q_re_[i] = p.real() / (m.omega_rad_s * m.omega_rad_s), q_im_[i] = p.imag() / (m.omega_rad_s * m.omega_rad_s);
+    end_(i, 0) = m.end_stiffness_N_m, end_(i, 1) = m.parity() * m.end_stiffness_N_m;
+    end_damping_[i] = in_stress ? m.inverse_quality / m.omega_rad_s : 0;
+  }
+  /// Displacement and its share of the stress, from velocity and its companion.
+  [[nodiscard]] Eigen::ArrayXd felt(const Eigen::ArrayXd& re, const Eigen::ArrayXd& im) const { return q_re_ * re + q_im_ * im + end_damping_ * re; }
+
+  void raise_tension(const Eigen::ArrayXd& re, const Eigen::ArrayXd& im) {
+    const Eigen::ArrayXd q = q_re_ * re + q_im_ * im + step_ * re;  // at the end of the step to come
+    const double raised = axial_ / 4 * (k_ * q).square().sum();
+    own_ = -raised * length_ / 2 * k_.square() * q;
+    pull_ = raised * Eigen::Vector2d{(k_ * q).sum(), -(k_ * q * (pi * number).cos()).sum()};
+  }
+
+  double length_, axial_, step_;
+  Eigen::Index transverse_ = 0;
+  Eigen::ArrayXd re_, im_, own_, turn_re_, turn_im_, push_re_, push_im_, once_re_, once_im_, q_re_, q_im_, k_, end_damping_;
+  Eigen::MatrixXd shape_, end_;
+  Eigen::Vector2d pull_ = Eigen::Vector2d::Zero();
+};
+
+}  // namespace rosin

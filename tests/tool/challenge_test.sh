@@ -1,0 +1,35 @@
+# rosin challenge: rigs own up to nothing and are made once; diagnoses are set against the truth as they should be.
+. "$ROSIN_SOURCE/tests/tool/common.sh"
+
+expect 0 challenge --out a --seed 7 --count 2 --effect channel-skew --only-make --shard 2/2
+same "$(ls a/rigs)" challenge-700001
+same "$(grep -c skew a/rigs/challenge-700001/rig.toml || true)" 0
+same "$(ls a/rigs/challenge-700001 | tr '\n' ' ')" "bow-1.wav bow-2.wav pluck-1.wav pluck-2.wav pluck-3.wav rig.toml "
+expect 0 validate a/rigs/challenge-700001/rig.toml
+expect 0 challenge --out a --seed 7 --count 2 --effect channel-skew --only-make --shard 2/2
+expect 0 check a/rigs/challenge-700001
+
+# Diagnoses written by hand: one right, one that names something else; of a rig of which the truth alone is there.
+mkdir -p b/rigs b/truth b/diagnoses
+sed 's/challenge-700001/one/' a/truth/challenge-700001.json >b/truth/one.json
+sed 's/challenge-700001/two/' a/truth/challenge-700001.json >b/truth/two.json
+for n in one two; do
+  perl -MJSON::PP -e '
+    local $/;
+    open my $in, "<", "b/truth/$ARGV[0].json" or die;
+    my $skew = decode_json(<$in>)->{effects}[0]{parameters}{skew_s};
+    my @ends = sort { $a <=> $b } 1.01 * $skew, 1.03 * $skew;
+    my %said = (effect => "channel-skew", where => {}, indistinguishable_from => [], parameters => { skew_s => { value => 1.02 * $skew, ci95 => \@ends } });
+    $said{effect} = "mains-hum", $said{parameters} = {} if $ARGV[0] eq "two";
+    print encode_json({ verdict => "explained", missing => [\%said], fit => { metric => "pluck-residual", before => 0.1, after => 0.0011, noise_floor => 0.001 }, seconds => 3 })' \
+    $n >b/diagnoses/$n.json
+done
+expect 0 challenge --out b
+says "Named right: 1/2" "95 % intervals that cover: 0/1" "skew_s 2 %" "mains-hum" "| channel-skew |" "median: 1.1"
+same "$(cat b/challenge.md)" "$out"
+
+expect 2 challenge --out c --count 1 --effect gremlins
+says "gremlins"
+expect 2 challenge --out c --count 1 --shard 3/2
+says "3/2"
+finish

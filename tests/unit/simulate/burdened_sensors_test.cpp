@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/simulate/burdened_sensors.hpp>
+
+#include <doctest/doctest.h>
+
+namespace {
+
+constexpr double step_s = 1 / 2048e3, pi = 3.14159265358979323846;
+
+std::vector<double> tone(double f, std::size_t n = 40000) {
+  std::vector<double> x(n);
+  for (std::size_t i = 0; i < n; ++i) x[i] = std::cos(2 * pi * f * static_cast<double>(i) * step_s);
+  return x;
+}
+
+/// Complex amplitude over whole periods at the end of the record.
+std::complex<double> amplitude(const std::vector<double>& x, double f, std::size_t periods = 20) {
+  const auto n = static_cast<std::size_t>(std::lround(static_cast<double>(periods) / (f * step_s)));
+  std::complex<double> sum = 0;
+  for (std::size_t i = x.size() - n; i < x.size(); ++i) sum += x[i] * std::polar(1.0, -2 * pi * f * static_cast<double>(i) * step_s);
+  return 2.0 * sum / static_cast<double>(n);
+}
+
+}  // namespace
+
+TEST_CASE("a sensor's resonance answers a tone as the equation says, and leaves a steady force alone") {
+  for (const double f : {5000.0, 16000.0, 25600.0}) {
+    std::array<std::vector<double>, 2> x{tone(f), std::vector<double>(40000, 0.7)};
+    rosin::disturb(x, {.resonance_Hz = {20000, 18000}, .resonance_q = {8, 15}}, step_s);
+    const std::complex<double> s(0, 2 * pi * f), w = 2 * pi * 20000;
+    CHECK(std::abs(amplitude(x[0], f) - w * w / (s * s + s * w / 8.0 + w * w)) < 2e-3);
+    for (const double y : x[1]) CHECK(std::abs(y - 0.7) < 1e-9);
+  }
+}
+
+TEST_CASE("skew delays the far channel, crosstalk mixes, the quadratic share bends") {
+  const double f = 16000, skew = 1.37e-6;
+  std::array<std::vector<double>, 2> x{tone(f), tone(f)};
+  rosin::disturb(x, {.skew_s = skew}, step_s);
+  CHECK(std::abs(amplitude(x[1], f) / amplitude(x[0], f) - std::polar(1.0, -2 * pi * f * skew)) < 1e-5);
+  x = {tone(f), std::vector<double>(40000, 0.0)};
+  rosin::disturb(x, {.crosstalk = 0.02}, step_s);
+  CHECK(std::abs(amplitude(x[1], f)) == doctest::Approx(0.02));
+  x = {tone(f), tone(f)};
+  rosin::disturb(x, {.quadratic_per_N = {0, 0.1}}, step_s);
+  CHECK(std::abs(amplitude(x[1], 2 * f)) == doctest::Approx(0.05));
+  CHECK(std::abs(amplitude(x[0], 2 * f)) < 1e-9);
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/simulate/burdened_take.hpp>
+
+#include <rosin/friction/friction_curves.hpp>
+#include <rosin/friction/velocity_curve.hpp>
+#include <rosin/simulate/modal_pluck.hpp>
+
+#include <doctest/doctest.h>
+
+namespace {
+
+const rosin::modal_rig rig{{.length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}}, {7, 3.5, 15}};
+constexpr double rate_Hz = 128000;
+constexpr int oversampling = 16;
+constexpr double step_s = 1 / rate_Hz / oversampling;
+
+double apart(const std::vector<double>& a, const std::vector<double>& b, std::size_t from, std::size_t to) {
+  double off = 0, all = 0;
+  for (std::size_t i = from; i < to; ++i) off += std::pow(a[i] - b[i], 2), all += b[i] * b[i];
+  return std::sqrt(off / all);
+}
+
+}  // namespace
+
+TEST_CASE("a pluck of a string without a burden is that of the closed form") {
+  const rosin::modal_decimator decimate{rosin::modal_settings{}.low_pass(), step_s, oversampling};
+  const double lead_s = static_cast<double>(decimate.reach()) * step_s;
+  for (const double duration : {0.0, 40e-6}) {
+    const auto steps = rosin::step_pluck(rig, {}, {.release_s = 0.004 + lead_s, .release_duration_s = duration}, 0.02 + 2 * lead_s, 250e3, step_s);
+    const auto near = decimate.points(steps.end_N[0]);
+    const double half_step = duration > 0 ? 0 : step_s / 2;  // a step of the force is a slope of one step here
+    const auto truth = rosin::simulate_pluck(rig, {.release_s = 0.004 + half_step, .release_duration_s = duration, .duration_s = 0.02});
+    REQUIRE(truth);
+    CHECK(apart(near, truth->force_near_N, 0, 2400) < 2e-3);
+  }
+}
+
+TEST_CASE("a stroke is that of modal_stroke; a contact of no width is one of very little; a heavy rod does not yield") {
+  const rosin::velocity_curve<rosin::two_exponential_curve<double>> law{{0.38, 0.02, 0.42, 0.14, 0.35}};
+  const rosin::steady_rod motion{.speed_m_s = 0.2, .normal_force_N = 0.3};
+  const auto play = [&](const rosin::yielding_rod& rod, double width) { return rosin::step_stroke(rig, {}, law, motion, rod, 0.3, width, 0.02, 250e3, step_s); };
+  const auto plain = play({}, 0);
+  const rosin::modal_contact peer{rig, 0.3, 250e3, step_s};
+  CHECK(plain.force_N.size() == plain.end_N[0].size());
+  CHECK(apart(play({100, 900, 10}, 0).force_N, plain.force_N, 0, plain.force_N.size()) < 1e-3);
+  CHECK(apart(play({0.003, 900, 10}, 0).force_N, plain.force_N, 0, plain.force_N.size()) > 0.02);
+  const auto early = static_cast<std::size_t>(0.0075 / step_s);  // until the first slips: then the smallest difference grows
+  CHECK(apart(play({}, 1e-5).force_N, plain.force_N, 0, early) < 0.02);
+
+  rosin::modal_settings settings{.oversampling = oversampling};
+  const auto other = rosin::simulate_stroke(rig, law, motion, {.position = 0.3, .duration_s = 0.02}, settings);
+  REQUIRE(other);
+  const rosin::modal_decimator decimate{settings.low_pass(), step_s, oversampling};
+  const auto near = decimate.points(plain.end_N[0]);
+  std::vector<double> same(other->force_near_N.begin(), other->force_near_N.begin() + static_cast<std::ptrdiff_t>(near.size()));
+  // The first sample of `near` is reach() steps later.
+  std::vector<double> late;
+  const double offset = static_cast<double>(decimate.reach()) / oversampling;
+  for (std::size_t i = 0; i + 60 < near.size(); ++i) {
+    const auto j = static_cast<std::size_t>(static_cast<double>(i) + offset);
+    const double u = static_cast<double>(i) + offset - static_cast<double>(j);
+    late.push_back((1 - u) * other->force_near_N[j] + u * other->force_near_N[j + 1]);
+  }
+  CHECK(apart(near, late, 0, 900) < 0.05);  // up to the straight line between two samples
+}
