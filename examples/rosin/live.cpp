@@ -38,13 +38,24 @@ rosin::outcome<rosin::rig> rig_of(const options& given, take_plan& take, std::op
 
 json memory_json(std::uint64_t before, std::uint64_t after) { return {{"resident_bytes_early", before}, {"resident_bytes_late", after}}; }
 
-/// What both the recorder and the sled have to be told.
-recorder_hooks hooks_of(live_chain& chain, std::optional<sled>& moves, std::uint64_t& early_bytes) {
+struct live_state {
+  std::optional<rosin::failure> bad;  ///< an output that broke
+  std::uint64_t early_bytes = 0;
+};
+
+/// What both the recorder and the sled have to be told. A take goes on where only an output breaks.
+recorder_hooks hooks_of(live_chain& chain, std::optional<sled>& moves, bool recorded, live_state& state) {
   recorder_hooks hooks;
-  hooks.frames = [&](std::span<const double> frames) { return chain.push(frames); };
+  hooks.frames = [&, recorded](std::span<const double> frames) -> std::optional<rosin::failure> {
+    auto bad = chain.push(frames);
+    if (!bad || !recorded) return bad;
+    std::cerr << "rosin: " << bad->message << "; the take goes on" << std::endl;
+    state.bad = bad;
+    return std::nullopt;
+  };
   if (moves) hooks.begun = [&] { moves->begin(); };
   hooks.over = [&](double time_s) -> std::optional<std::string> {
-    if (early_bytes == 0 && time_s > 1) early_bytes = resident_bytes();
+    if (state.early_bytes == 0 && time_s > 1) state.early_bytes = resident_bytes();
     return moves ? moves->over() : std::nullopt;
   };
   hooks.shows = [&] { return chain.shows() + (moves ? "  " + moves->shows() : ""); };
@@ -76,13 +87,14 @@ exit_code run(const options& given) {
     moves.emplace(*std::move(opened));
   }
   for (const auto& line : chain->remarks()) std::cerr << "rosin: " << line << '\n';
-  std::uint64_t early_bytes = 0;
-  const take_report report = from.record(take, files ? &*files : nullptr, hooks_of(*chain, moves, early_bytes));
+  live_state state;
+  const take_report report = from.record(take, files ? &*files : nullptr, hooks_of(*chain, moves, files.has_value(), state));
   const std::uint64_t late_bytes = resident_bytes();
   auto bad = chain->finish();
   if (bad) std::cerr << "rosin: " << bad->message << '\n';
+  if (!bad) bad = state.bad;
   json out{{"schema", 1}, {"recording", to_json(report)}, {"reconstruction", chain->to_json()}, {"fullest_buffer", from.fullest_buffer()},
-           {"memory", memory_json(early_bytes, late_bytes)}};
+           {"memory", memory_json(state.early_bytes, late_bytes)}};
   if (!given.json_file.empty())
     if (const auto why = save_json(given.json_file, out, given.live.force)) bad = why;
   const bool lines_on_out = std::find(given.live.out.begin(), given.live.out.end(), "-") != given.live.out.end();

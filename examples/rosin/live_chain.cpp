@@ -147,10 +147,13 @@ std::optional<rosin::failure> live_chain::give(std::size_t count) {
     const double slips = state == rosin::contact_state::unknown ? nan : state == rosin::contact_state::slipping ? 1 : 0;
     rows_.insert(rows_.end(), {r.force_N(), r.velocity_m_s(), r.force_near_N, r.force_far_N, r.velocity_near_m_s, r.velocity_far_m_s, slips});
   }
-  rows_given_ += rows_.size() / columns.size();
-  for (auto& out : outputs_)
-    if (auto bad = out.write(rows_)) return bad;
-  return std::nullopt;
+  std::optional<rosin::failure> broken;
+  std::erase_if(outputs_, [&](frame_output& out) {
+    auto bad = out.write(rows_);
+    if (bad) broken = bad;
+    return bad.has_value();
+  });
+  return broken;
 }
 
 std::optional<rosin::failure> live_chain::finish() {

@@ -36,6 +36,7 @@ public:
   [[nodiscard]] static rosin::outcome<live_chain> design(const rosin::rig& rig, const take_plan& take, const calibration_set& calibration,
                                                          const rosin::frame_format& format, const live_options& how);
 
+  /// The reason where an output took no more; it gets nothing further, the others go on.
   [[nodiscard]] std::optional<rosin::failure> push(std::span<const double> interleaved);
   /// Rows for the frames whose result is beyond the end.
   [[nodiscard]] std::optional<rosin::failure> finish();
@@ -69,7 +70,7 @@ private:
   std::vector<double> rows_;
   std::size_t width_ = 2, skip_ = 0, latency_ = 0;
   double rate_Hz_ = 0, speed_m_s_ = 0;
-  std::uint64_t known_ = 0, rows_given_ = 0;
+  std::uint64_t known_ = 0;
   double largest_N_ = 0, sum_N_ = 0;
   rosin::bow_frame<double> latest_;
 };

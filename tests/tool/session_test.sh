@@ -68,4 +68,16 @@ expect 0 compare shifted.csv cut.csv
 delta=$(sed -n 's/^force_N: Delta \([0-9.]*\).*/\1/p' out.txt)
 cat out.txt
 perl -e 'exit !(@ARGV && $ARGV[0] ne "" && $ARGV[0] < 0.01)' -- "$delta" || { echo "FAILED: Delta against the truth"; failures=1; }
+
+# From a file; the result as lines for another program, and one that does not listen to the end. The take goes on.
+"$tool" live rig --calibration fit.json --source rig/bow-1.wav --no-take --speed 0.2 --normal-force 0.3 --out - >lines.txt 2>err.txt
+cmp lines.txt live.csv || { echo "FAILED: the lines on standard output are not those of the file"; failures=1; }
+"$tool" live rig --calibration fit.json --source rig/bow-1.wav --take again --speed 0.2 --normal-force 0.3 --out - 2>err.txt | head -n 2 >lines.txt || true
+says "standard output: Broken pipe; the take goes on" "again: "
+expect 2 live rig --calibration fit.json --source rig/bow-1.wav --take again --speed 0.2 --normal-force 0.3
+says "is the name of an earlier take"
+expect 2 live rig --calibration rig/rig.toml --source rig/bow-1.wav --no-take
+says "is not JSON"
+expect 2 live rig --calibration fit.json --source rig/bow-1.wav --no-take --position 0.3 --pass 30000 --stop 20000
+says "pass has to be below stop"
 finish
