@@ -123,32 +123,57 @@ private:
   bool open_ = true;
 };
 
+/// The whole of it, step by step.
+class rehearsal {
+public:
+  rehearsal(fake_player player, std::unique_ptr<named_line> line, std::unique_ptr<named_line> sled, const fake_rig_options& given)
+      : player_{std::move(player)}, line_{std::move(line)}, sled_line_{std::move(sled)}, converter_{player_, line_->device(), given} {}
+
+  [[nodiscard]] std::optional<rosin::failure> until(double time_s) {
+    while (const auto name = fingers_.next())
+      if (!player_.play(*name)) std::cerr << "rosin: there is no take " << *name << std::endl;
+    if (sled_line_)
+      if (auto bad = move_sled(time_s)) return bad;
+    converter_.send_until(time_s);
+    return std::nullopt;
+  }
+
+private:
+  [[nodiscard]] std::optional<rosin::failure> move_sled(double time_s) {
+    std::array<std::uint8_t, 256> bytes{};
+    const auto got = sled_line_->device().read(bytes, std::chrono::milliseconds{0});
+    const int before = sled_.strokes();
+    const std::string answer = sled_.receive({reinterpret_cast<const char*>(bytes.data()), got.bytes}, time_s);
+    if (sled_.strokes() > before && !player_.bow()) std::cerr << "rosin: all bowed takes have been played" << std::endl;
+    return sled_line_->device().write(answer);
+  }
+
+  fake_player player_;
+  std::unique_ptr<named_line> line_, sled_line_;
+  digitiser converter_;
+  rosin::grbl_simulator sled_;
+  hand fingers_;
+};
+
 exit_code run(const fake_rig_options& given) {
   stop_on_signals();
   auto player = fake_player::load(given);
   if (!player) return fail(player.error());
   auto line = make_line(given.line);
   if (!line) return fail(line.error());
-  auto sled_line = given.sled.empty() ? rosin::outcome<std::unique_ptr<named_line>>{std::unique_ptr<named_line>{}} : make_line(given.sled);
-  if (!sled_line) return fail(sled_line.error());
-  digitiser converter{*player, (*line)->device(), given};
-  rosin::grbl_simulator sled;
-  hand fingers;
+  std::unique_ptr<named_line> sled_line;
+  if (!given.sled.empty()) {
+    auto made = make_line(given.sled);
+    if (!made) return fail(made.error());
+    sled_line = *std::move(made);
+  }
+  rehearsal all{*std::move(player), *std::move(line), std::move(sled_line), given};
   std::cout << "ready: " << given.line << (given.sled.empty() ? "" : " " + given.sled) << std::endl;
   const auto start = std::chrono::steady_clock::now();
-  std::array<std::uint8_t, 256> bytes{};
-  for (int strokes = 0; !stopped();) {
+  while (!stopped()) {
     const std::chrono::duration<double> now = std::chrono::steady_clock::now() - start;
     if (given.seconds > 0 && now.count() > given.seconds) break;
-    while (const auto name = fingers.next())
-      if (!player->play(*name)) std::cerr << "rosin: there is no take " << *name << std::endl;
-    if (*sled_line) {
-      const auto got = (*sled_line)->device().read(bytes, std::chrono::milliseconds{0});
-      if (const auto bad = (*sled_line)->device().write(sled.receive({reinterpret_cast<const char*>(bytes.data()), got.bytes}, now.count()))) return fail(bad->message);
-      if (sled.strokes() > strokes && !player->bow()) std::cerr << "rosin: all bowed takes have been played" << std::endl;
-      strokes = sled.strokes();
-    }
-    converter.send_until(now.count());
+    if (const auto bad = all.until(now.count())) return fail(bad->message);
     std::this_thread::sleep_for(std::chrono::microseconds{500});
   }
   return exit_code::ok;

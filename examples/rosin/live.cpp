@@ -62,6 +62,37 @@ recorder_hooks hooks_of(live_chain& chain, std::optional<sled>& moves, bool reco
   return hooks;
 }
 
+rosin::outcome<live_chain> chain_for(const options& given, const rosin::rig& rig, const take_plan& take, const rosin::frame_format& format) {
+  for (const auto& c : rig.channels)
+    if (c.index >= format.channels) return rosin::failure{rig.file + ": channels." + c.name + ".index: the source has no such channel"};
+  const auto calibration = read_calibration(given.calibration);
+  if (!calibration) return rosin::failure{calibration.error()};
+  return live_chain::design(rig, take, *calibration, format, given.live);
+}
+
+rosin::outcome<std::optional<sled>> sled_for(const options& given, const take_plan& take) {
+  if (given.stroke.device.empty()) return std::optional<sled>{};
+  auto opened = sled::open(given.stroke, take.speed_m_s.value_or(0));
+  if (!opened) return rosin::failure{opened.error()};
+  return std::optional<sled>{*std::move(opened)};
+}
+
+exit_code tell(const options& given, const recorder& from, const take_report& report, live_chain& chain, const live_state& state) {
+  const std::uint64_t late_bytes = resident_bytes();
+  auto bad = chain.finish();
+  if (bad) std::cerr << "rosin: " << bad->message << '\n';
+  const json out{{"schema", 1}, {"recording", to_json(report)}, {"reconstruction", chain.to_json()}, {"fullest_buffer", from.fullest_buffer()},
+                 {"memory", memory_json(state.early_bytes, late_bytes)}};
+  if (!given.json_file.empty())
+    if (const auto why = save_json(given.json_file, out, given.live.force)) {
+      std::cerr << "rosin: " << why->message << '\n';
+      bad = why;
+    }
+  const bool lines_on_out = std::find(given.live.out.begin(), given.live.out.end(), "-") != given.live.out.end();
+  if (given.json_file != "-") (lines_on_out ? std::cerr : std::cout) << summary_of(report) << "\n  " << chain.summary() << std::endl;
+  return !bad && !state.bad && report.problems.empty() && report.frames > 0 ? exit_code::ok : exit_code::finding;
+}
+
 exit_code run(const options& given) {
   stop_on_signals();
   const bool as_json = given.json_file == "-";
@@ -71,35 +102,17 @@ exit_code run(const options& given) {
   if (!rig) return fail(rig.error(), as_json);
   if (!given.json_file.empty())
     if (const auto why = may_write_file(given.json_file, given.live.force)) return fail(why->message, as_json);
-  const auto calibration = read_calibration(given.calibration);
-  if (!calibration) return fail(calibration.error(), as_json);
   auto input = open_input(given.input);
   if (!input) return fail(input.error(), as_json);
   recorder from{*std::move(input), given.how};  // from here on it is listened to, whatever else takes its time
-  for (const auto& c : rig->channels)
-    if (c.index >= from.format().channels) return fail(rig->file + ": channels." + c.name + ".index: the source has no such channel", as_json);
-  auto chain = live_chain::design(*rig, take, *calibration, from.format(), given.live);
+  auto chain = chain_for(given, *rig, take, from.format());
   if (!chain) return fail(chain.error(), as_json);
-  std::optional<sled> moves;
-  if (!given.stroke.device.empty()) {
-    auto opened = sled::open(given.stroke, take.speed_m_s.value_or(0));
-    if (!opened) return fail(opened.error(), as_json);
-    moves.emplace(*std::move(opened));
-  }
+  auto moves = sled_for(given, take);
+  if (!moves) return fail(moves.error(), as_json);
   for (const auto& line : chain->remarks()) std::cerr << "rosin: " << line << '\n';
   live_state state;
-  const take_report report = from.record(take, files ? &*files : nullptr, hooks_of(*chain, moves, files.has_value(), state));
-  const std::uint64_t late_bytes = resident_bytes();
-  auto bad = chain->finish();
-  if (bad) std::cerr << "rosin: " << bad->message << '\n';
-  if (!bad) bad = state.bad;
-  json out{{"schema", 1}, {"recording", to_json(report)}, {"reconstruction", chain->to_json()}, {"fullest_buffer", from.fullest_buffer()},
-           {"memory", memory_json(state.early_bytes, late_bytes)}};
-  if (!given.json_file.empty())
-    if (const auto why = save_json(given.json_file, out, given.live.force)) bad = why;
-  const bool lines_on_out = std::find(given.live.out.begin(), given.live.out.end(), "-") != given.live.out.end();
-  if (!as_json) (lines_on_out ? std::cerr : std::cout) << summary_of(report) << "\n  " << chain->summary() << std::endl;
-  return !bad && report.problems.empty() && report.frames > 0 ? exit_code::ok : exit_code::finding;
+  const take_report report = from.record(take, files ? &*files : nullptr, hooks_of(*chain, *moves, files.has_value(), state));
+  return tell(given, from, report, *chain, state);
 }
 
 }  // namespace
