@@ -35,7 +35,8 @@ struct end_fit_result {
   pluck_fit_result plucks;            ///< value, sd and covariance of the layout's parameters
   std::vector<fitted_mode> modes;
   std::array<modal_termination, 2> ends;
-  Eigen::MatrixXd covariance;         ///< of the layout's parameters, then ln f, ln q, ln(Z / M) of each mode
+  Eigen::MatrixXd covariance;         ///< of the layout's parameters, then ln f, ln q, ln(Z / M) of each mode; the last counts as
+                                      ///< unknown by a factor of e where the end is uncertain: it may be none of this end's
 };
 
 namespace detail {
@@ -160,7 +161,9 @@ private:
       const Eigen::Index at = d_.model().mode_at(i);
       const auto sd = [&](Eigen::Index k) { return std::sqrt(std::max(0.0, out.covariance(at + k, at + k))); };
       const admittance_mode m = d_.model().mode(d_.value(), i);
-      out.modes.push_back({d_.model().mode_end[i], m, m.frequency_Hz * sd(0), m.q * sd(1), sd(2), end_uncertain(i)});
+      const bool uncertain = end_uncertain(i);
+      out.modes.push_back({d_.model().mode_end[i], m, m.frequency_Hz * sd(0), m.q * sd(1), sd(2), uncertain});
+      if (uncertain) out.covariance(at + 2, at + 2) += 1;
       out.ends[d_.model().mode_end[i]].modes.push_back(m);
     }
     if (!out.plucks.value.allFinite() || worst(f) > 0.6) return failure{takes_.front().name + ": the plucks do not ring as the declared string should, nor with ends that give way"};
