@@ -28,7 +28,8 @@ void add_input_options(CLI::App& command, input_options& given);
 /// Any source; a FrameSource itself.
 class frame_input {
 public:
-  template <rosin::FrameSource Source>
+  template <class Source>
+    requires(!std::same_as<Source, frame_input>) && rosin::FrameSource<Source>
   explicit frame_input(Source source) : from_{std::make_unique<held<Source>>(std::move(source))} {}
 
   [[nodiscard]] rosin::frame_format format() const { return from_->format(); }

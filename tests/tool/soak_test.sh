@@ -2,6 +2,7 @@
 # memory, every block done before the next. ROSIN_SOAK_S says how long; ROSIN_SOAK_RATE at which rate.
 . "$ROSIN_SOURCE/tests/tool/common.sh"
 seconds=${ROSIN_SOAK_S:-4}
+export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}quarantine_size_mb=1   # or the sanitizer's own memory grows
 sink=(--out soak.wav)
 [ "$seconds" -lt 120 ] || sink=()   # seven channels of floating point would fill a disk
 mkdir small

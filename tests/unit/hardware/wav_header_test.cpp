@@ -25,8 +25,10 @@ std::string written(const test::temporary_folder& folder, const rosin::frame_for
 
 TEST_CASE("finished or not, libsndfile reads every format back to half a step") {
   const test::temporary_folder folder;
-  for (const auto& [bits, is_float] : {std::pair{16, false}, {24, false}, {32, false}, {32, true}})
+  for (const auto& form : {std::pair{16, false}, {24, false}, {32, false}, {32, true}})
     for (const bool done : {false, true}) {
+      const auto bits = form.first;
+      const auto is_float = form.second;
       CAPTURE(bits);
       CAPTURE(done);
       const rosin::frame_format f{128000, 2, bits, is_float};
