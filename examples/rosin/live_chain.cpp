@@ -107,16 +107,21 @@ rosin::outcome<live_chain> live_chain::design(const rosin::rig& rig, const take_
   if (!coefficients) return rosin::failure{coefficients.error() + ": a larger --error or a wider band makes it shorter"};
   out.run_ = std::make_unique<reconstructor>(*coefficients);
   out.latency_ = out.skip_ = coefficients->latency;
-  out.width_ = static_cast<std::size_t>(format.channels);
-  out.rate_Hz_ = format.sample_rate_Hz;
-  out.speed_m_s_ = take.speed_m_s.value_or(0);
-  out.watch_ = std::make_unique<rosin::slip_watch<double>>(out.speed_m_s_);
-  for (const auto& path : how.out) {
-    auto one = open_output(path, how.force, format.sample_rate_Hz, columns);
-    if (!one) return rosin::failure{one.error()};
-    out.outputs_.push_back(*std::move(one));
-  }
+  if (const auto bad = out.open(take, format, how)) return *bad;
   return out;
+}
+
+std::optional<rosin::failure> live_chain::open(const take_plan& take, const rosin::frame_format& format, const live_options& how) {
+  width_ = static_cast<std::size_t>(format.channels);
+  rate_Hz_ = format.sample_rate_Hz;
+  speed_m_s_ = take.speed_m_s.value_or(0);
+  watch_ = std::make_unique<rosin::slip_watch<double>>(speed_m_s_);
+  for (const auto& path : how.out) {
+    auto one = open_output(path, how.force, rate_Hz_, columns);
+    if (!one) return rosin::failure{one.error()};
+    outputs_.push_back(*std::move(one));
+  }
+  return std::nullopt;
 }
 
 std::optional<rosin::failure> live_chain::push(std::span<const double> interleaved) {

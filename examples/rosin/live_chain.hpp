@@ -58,6 +58,7 @@ private:
   live_chain() = default;
   void place(const rosin::rig& rig, const calibration_set& set, rosin::calibration& at, double declared);
   void set_ends(const rosin::rig& rig, const calibration_set& set, double rate_Hz);
+  [[nodiscard]] std::optional<rosin::failure> open(const take_plan& take, const rosin::frame_format& format, const live_options& how);
   [[nodiscard]] std::optional<rosin::failure> give(std::size_t count);
 
   std::array<end, 2> ends_;

@@ -6,6 +6,7 @@
 #include "recorder.hpp"
 #include "sled.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -76,15 +77,25 @@ std::optional<rosin::failure> record_all(const options& given, rig_file_writer& 
   return std::nullopt;
 }
 
+exit_code tell(const options& given, const std::string& rig, const recorder& from, const std::vector<take_report>& reports,
+               const std::vector<std::string>& mended, const std::optional<rosin::failure>& why) {
+  if (why) std::cerr << "rosin: " << why->message << '\n';
+  json takes = json::array();
+  for (const auto& r : reports) takes.push_back(to_json(r));
+  if (given.json) print({{"schema", 1}, {"rig", rig}, {"takes", takes}, {"mended", mended}, {"fullest_buffer", from.fullest_buffer()}});
+  const bool sound = std::all_of(reports.begin(), reports.end(), [](const auto& r) { return r.problems.empty() && r.frames > 0; });
+  return sound && !why && !reports.empty() ? exit_code::ok : exit_code::finding;
+}
+
 exit_code run(const options& given) {
   stop_on_signals();
   auto files = rig_file_writer::open(given.rig, given.like);
   if (!files) return fail(files.error(), given.json);
+  if (given.count > 1 && !given.take.name.empty()) return fail("--count: --take names one take only", given.json);
   take_plan first = given.take;
   if (const auto why = plan(first, *files)) return fail(why->message, given.json);
-  if (given.count > 1 && !given.take.name.empty()) return fail("--count: --take names one take only", given.json);
-  const auto notes = mend(given.rig);
-  for (const auto& line : notes) std::cerr << "rosin: " << line << '\n';
+  const auto mended = mend(given.rig);
+  for (const auto& line : mended) std::cerr << "rosin: " << line << '\n';
   auto input = open_input(given.input);
   if (!input) return fail(input.error(), given.json);
   recorder from{*std::move(input), given.how};
@@ -92,15 +103,7 @@ exit_code run(const options& given) {
   std::vector<take_report> reports;
   const auto why = record_all(given, *files, from, reports);
   if (why && reports.empty()) return fail(why->message, given.json);
-  bool sound = !why && !reports.empty();
-  json takes = json::array();
-  for (const auto& r : reports) {
-    takes.push_back(to_json(r));
-    sound = sound && r.problems.empty() && r.frames > 0;
-  }
-  if (why) std::cerr << "rosin: " << why->message << '\n';
-  if (given.json) print({{"schema", 1}, {"rig", files->path()}, {"takes", takes}, {"mended", notes}, {"fullest_buffer", from.fullest_buffer()}});
-  return sound ? exit_code::ok : exit_code::finding;
+  return tell(given, files->path(), from, reports, mended, why);
 }
 
 }  // namespace
