@@ -57,6 +57,23 @@ void position_rows(table_of_rows& t, const rig_calibration& c) {
   }
 }
 
+void end_rows(table_of_rows& t, const rig_calibration& c) {
+  for (const std::size_t e : {0U, 1U}) {
+    if (!c.ends.fitted[e]) continue;
+    t.group = std::string("termination ") + (e == 0 ? "near" : "far");
+    bool any = false;
+    for (const auto& m : c.ends.modes) {
+      if (m.end != e) continue;
+      any = true;
+      t.add(m.end_uncertain ? "resonance (or at the other end)" : "resonance", {m.mode.frequency_Hz, m.frequency_sd_Hz, 0}, "Hz");
+      t.add("its Q", {m.mode.q, m.q_sd, 0}, "");
+      const double relative = c.impedance_Ns_m ? c.impedance_Ns_m->value / m.mode.per_mass_per_s : 1 / m.mode.per_mass_per_s;
+      t.add(c.impedance_Ns_m ? "its mass" : "its mass / Z", {relative, relative * m.per_mass_relative_sd, 0}, c.impedance_Ns_m ? "g" : "ms", 1e3);
+    }
+    if (!any) t.text("rigid", "as far as these plucks tell");
+  }
+}
+
 void channel_rows(table_of_rows& t, const rig_calibration& c) {
   t.group = "channels";
   const double ratio_sd = std::sqrt(std::max(0.0, c.at.front().covariance(5, 5))), scale = c.at.front().scale_relative_sd;
@@ -104,6 +121,7 @@ std::vector<calibration_row> rows_of(const rig_calibration& c) {
   table_of_rows t;
   string_rows(t, c);
   position_rows(t, c);
+  end_rows(t, c);
   channel_rows(t, c);
   take_rows(t, c);
   t.group = "fit";
