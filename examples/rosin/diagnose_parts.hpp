@@ -10,6 +10,7 @@
 #include <rosin/diagnose/contact_effects.hpp>
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 #include <rosin/diagnose/tension_drift.hpp>
+#include <rosin/reconstruct/uncertainty.hpp>
 
 namespace tool {
 
@@ -21,14 +22,26 @@ struct diagnosed_stroke {
   std::array<std::vector<double>, 2> recorded_N, force_N;
   std::vector<double> mean_N, mean_m_s;
   rosin::bow_motion<double> motion;
-  double force_sd_N = 0, velocity_sd_m_s = 0, delta = 0;
+  rosin::reconstruction_uncertainty sd;
+  double force_sd_N = 0, velocity_sd_m_s = 0, delta = 0;  ///< in the middle of the take; Eq. (12)
 };
+
+/// The plucks to fit and to keep aside, what is known before, and what the declared model already holds.
+struct plucks_to_diagnose {
+  std::vector<rosin::pluck_take> takes, held;
+  rosin::pluck_guess guess;
+  rosin::pluck_options options;
+  std::vector<std::string> warnings;
+};
+[[nodiscard]] rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from);
 
 [[nodiscard]] rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d);
 
-/// Each bowed take with the string, the ends and the sensors that the plucks tell of; what cannot be used is said in d.warnings.
+/// Bowed takes (all, or the one named) with the string, the ends and the sensors that the plucks tell of; what cannot be used is said
+/// in `warnings`. Band: as given, or 0.30 to 0.45 of the sampling rate.
 [[nodiscard]] std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks,
-                                                                double tension_drift, provenance& from, rig_diagnosis& d);
+                                                                double tension_drift, provenance& from, std::vector<std::string>& warnings,
+                                                                const std::string& only = {}, std::optional<rosin::band> band = {});
 [[nodiscard]] rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks);
 /// Nothing sits on the string and its ends are rigid, as far as plucks tell.
 [[nodiscard]] bool is_plain(const rosin::pluck_diagnosis& plucks);

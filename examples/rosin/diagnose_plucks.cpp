@@ -8,30 +8,35 @@ namespace {
 
 bool has(const std::vector<std::string>& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
 
+std::vector<std::string> physics_of(const rosin::rig& rig) { return rig.model ? rig.model->physics : std::vector<std::string>{}; }
+
 }  // namespace
 
-rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d) {
+rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from) {
   rig_plucks plucks = read_plucks(rig, from);
-  d.warnings.insert(d.warnings.end(), plucks.warnings.begin(), plucks.warnings.end());
-  auto& [takes, held, warnings, incomplete] = plucks;
-  if (takes.empty() && held.empty()) return rosin::failure{rig.file + ": no pluck to compare with"};
-  if (takes.empty()) return rosin::failure{rig.file + ": every pluck is marked hold_out: none is left to fit"};
-  if (held.empty() && takes.size() > 1) {  // the last of several: one that nothing is fitted to
-    held.push_back(std::move(takes.back()));
-    takes.pop_back();
+  plucks_to_diagnose out{std::move(plucks.takes), std::move(plucks.held_out), guess_of(rig, values), {}, std::move(plucks.warnings)};
+  if (out.takes.empty() && out.held.empty()) return rosin::failure{rig.file + ": no pluck to compare with"};
+  if (out.takes.empty()) return rosin::failure{rig.file + ": every pluck is marked hold_out: none is left to fit"};
+  if (out.held.empty() && out.takes.size() > 1) {  // the last of several: one that nothing is fitted to
+    out.held.push_back(std::move(out.takes.back()));
+    out.takes.pop_back();
   }
+  const auto physics = physics_of(rig);
+  out.options.stiffness = has(physics, "bending-stiffness");
+  out.options.internal_loss = has(physics, "frequency-dependent-loss");
+  out.options.air_loss = has(physics, "air-loss");
+  if (!out.options.stiffness) out.guess.inharmonicity = 0;
+  return out;
+}
 
-  const std::vector<std::string> physics = rig.model ? rig.model->physics : std::vector<std::string>{};
-  rosin::pluck_options options;
-  options.stiffness = has(physics, "bending-stiffness");
-  options.internal_loss = has(physics, "frequency-dependent-loss");
-  options.air_loss = has(physics, "air-loss");
-  rosin::pluck_guess guess = guess_of(rig, values);
-  if (!options.stiffness) guess.inharmonicity = 0;
+rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d) {
+  const auto plucks = plucks_of(rig, values, from);
+  if (!plucks) return rosin::failure{plucks.error()};
+  d.warnings.insert(d.warnings.end(), plucks->warnings.begin(), plucks->warnings.end());
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;
-  const double rate = takes.front().rate_Hz;
-  const std::size_t count = takes.size();
-  return rosin::diagnose_plucks(takes, held, guess, options, [=](const rosin::pluck_fit_result& fit) {
+  const double rate = plucks->takes.front().rate_Hz;
+  const std::size_t count = plucks->takes.size();
+  return rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, [=, physics = physics_of(rig)](const rosin::pluck_fit_result& fit) {
     const rosin::string_facts facts{fit.value[rosin::pluck_layout::fundamental], rate, fit.limits.stop_Hz, impedance, length, count};
     return rosin::catalogue_without(physics, facts, fit.limits);
   });

@@ -200,14 +200,14 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from) 
   std::vector<diagnosed_stroke> strokes;
   const bool plain_string = is_plain(p);
   bool contact_open = false;
-  if (p.explained && values.impedance_Ns_m) strokes = reconstruct_strokes(rig, values, p, 0, from, d);
+  if (p.explained && values.impedance_Ns_m) strokes = reconstruct_strokes(rig, values, p, 0, from, d.warnings);
   else if (std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::bow; }))
     d.assumed.emplace_back("the strokes were not examined: the contact cannot be seen past what the plucks leave unexplained");
   if (!strokes.empty()) {
     const rosin::tension_drift drift = drift_of(strokes, p);
     if (drifted(drift)) {
       add_drift(drift, d);
-      strokes = reconstruct_strokes(rig, values, p, drift.relative, from, d);
+      strokes = reconstruct_strokes(rig, values, p, drift.relative, from, d.warnings);
     }
     contact_open = !examine_contact(rig, strokes, plain_string, d) && d.missing.empty();
   }

@@ -4,7 +4,6 @@
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
-#include <rosin/reconstruct/uncertainty.hpp>
 
 namespace tool {
 
@@ -41,21 +40,21 @@ rosin::bow_motion<double> motion_of(const diagnosed_stroke& s, const rosin::pluc
 }  // namespace
 
 std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, double tension_drift,
-                                                  provenance& from, rig_diagnosis& d) {
+                                                  provenance& from, std::vector<std::string>& warnings, const std::string& only, std::optional<rosin::band> band) {
   const rosin::pluck_scene scene = scene_of(plucks);
   std::vector<diagnosed_stroke> out;
   for (const auto& take : rig.takes) {
-    if (take.kind != rosin::take_kind::bow) continue;
+    if (take.kind != rosin::take_kind::bow || (!only.empty() && take.name != only)) continue;
     const auto position = rig.position_of(take);
     const auto read = read_take(rig, take, from);
     if (!read || !position) {
-      d.warnings.push_back(take.name + ": left out: " + (read ? "its position is unknown" : read.error()));
+      warnings.push_back(take.name + ": left out: " + (read ? "its position is unknown" : read.error()));
       continue;
     }
     if (rosin::has_error(read->check.findings)) {
       for (const auto& f : read->check.findings)
-        if (f.level == rosin::severity::error) d.warnings.push_back(sentence(rig, f));
-      d.warnings.push_back(take.name + ": left out for the error above");
+        if (f.level == rosin::severity::error) warnings.push_back(sentence(rig, f));
+      warnings.push_back(take.name + ": left out for the error above");
       continue;
     }
     diagnosed_stroke s;
@@ -63,7 +62,7 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
     s.speed_m_s = take.speed_m_s.value_or(0), s.normal_force_N = take.normal_force_N.value_or(0);
     s.calibration = rosin::at_tension(calibration_with(plucks, *position, values), tension_drift);
     s.recorded_N = {read->signals.near_N(), read->signals.far_N()};
-    const rosin::band limits{0.30 * s.rate_Hz, 0.45 * s.rate_Hz};
+    const rosin::band limits = band.value_or(rosin::band{0.30 * s.rate_Hz, 0.45 * s.rate_Hz});
     rosin::undo_sensors(plucks.data, plucks.best, s.recorded_N, s.rate_Hz, limits.stop_Hz);
     for (std::size_t c = 0; c < 2; ++c) {
       const double corner = rig.channel(c == 0 ? "near" : "far")->ac_coupled_Hz.value_or(0);
@@ -72,7 +71,7 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
     s.force_N = rosin::detail::calibrated(s.calibration, s.recorded_N[0], s.recorded_N[1]);
     s.motion = motion_of(s, scene, limits);
     if (s.motion.known.end <= s.motion.known.begin + 500) {
-      d.warnings.push_back(take.name + ": left out: too short");
+      warnings.push_back(take.name + ": left out: too short");
       continue;
     }
     for (std::size_t i = 0; i < s.motion.force_near_N.size(); ++i) {
@@ -81,9 +80,9 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
     }
     const auto slopes = rosin::sensitivity<rosin::full_physics>(s.calibration, s.force_N[0], s.force_N[1], limits, s.rate_Hz);
     const std::array<double, 2> noise{s.calibration.noise_N[0] / s.calibration.gain[0], s.calibration.noise_N[1] / s.calibration.gain[1]};
-    const auto sd = rosin::uncertainty<rosin::full_physics>(s.calibration, s.motion, slopes, noise, limits, s.rate_Hz);
+    s.sd = rosin::uncertainty<rosin::full_physics>(s.calibration, s.motion, slopes, noise, limits, s.rate_Hz);
     const auto middle = (s.motion.known.begin + s.motion.known.end) / 2;
-    s.force_sd_N = sd.force_sd_N[middle], s.velocity_sd_m_s = sd.velocity_sd_m_s[middle];
+    s.force_sd_N = s.sd.force_sd_N[middle], s.velocity_sd_m_s = s.sd.velocity_sd_m_s[middle];
     s.delta = rosin::consistency_delta(s.motion.force_near_N, s.motion.force_far_N);
     out.push_back(std::move(s));
   }

@@ -16,7 +16,7 @@ namespace tool {
 namespace {
 
 struct options {
-  std::string rig, take, calibration, report, json_file;
+  std::string rig, take, calibration, model, report, json_file;
   table_output output;
   take_options how;
   bool no_fine_tune = false, strict = false;
@@ -59,7 +59,7 @@ rosin::outcome<calibration_set> calibration_of(const options& given, const rosin
     if (const auto why = from.add_input(given.calibration)) return *why;
     return read_calibration(given.calibration);
   }
-  auto made = calibrate(rig, from, !given.report.empty());
+  auto made = calibrate(rig, from, !given.report.empty());  // with --model, too: what the declared model makes of the plucks stands beside it
   if (!made) return rosin::failure{made.error()};
   fitted = *std::move(made);
   return set_of(*fitted);
@@ -74,6 +74,15 @@ std::optional<rosin::failure> deliver(const options& given, const take_reconstru
   if (!given.json_file.empty())
     if (auto why = save_json(given.json_file, to_json(r, from), given.output.force)) return why;
   return std::nullopt;
+}
+
+std::string said_of(const corrected_model& m) {
+  const auto list = [](const std::vector<std::string>& names) {
+    std::string out;
+    for (const auto& n : names) out += (out.empty() ? "" : ", ") + n;
+    return out.empty() ? std::string{"nothing"} : out;
+  };
+  return m.file + ": taken into account: " + list(m.effects) + (m.passed_over.empty() ? "" : "; of the contact, hence not needed: " + list(m.passed_over));
 }
 
 void print_text(std::ostream& out, const take_reconstruction& r) {
@@ -95,7 +104,13 @@ exit_code run(const options& given, provenance from) {
   std::optional<rig_calibration> fitted;
   const auto calibration = calibration_of(given, rig, from, fitted);
   if (!calibration) return fail(calibration.error(), as_json);
-  auto made = reconstruct_take(rig, **take, *read, *calibration, given.how);
+  take_options how = given.how;
+  if (!given.model.empty()) {
+    auto model = read_model(given.model, rig, from);
+    if (!model) return fail(model.error(), as_json);
+    how.model = *std::move(model), how.fine_tune = false;
+  }
+  auto made = reconstruct_take(rig, **take, *read, *calibration, how);
   if (!made) return fail(made.error(), as_json);
   std::vector<std::string> warnings = folder->notes, assumed = fitted ? fitted->assumed : rosin::values_of(rig).assumed;
   for (const auto& f : read->check.findings)
@@ -103,6 +118,7 @@ exit_code run(const options& given, provenance from) {
   if (fitted) warnings.insert(warnings.end(), fitted->warnings.begin(), fitted->warnings.end());
   made->warnings.insert(made->warnings.begin(), warnings.begin(), warnings.end());
   made->assumed.insert(made->assumed.begin(), assumed.begin(), assumed.end());
+  if (how.model) made->assumed.push_back(said_of(*how.model));
   if (const auto why = deliver(given, *made, fitted, from)) return fail(why->message, as_json);
   for (const auto& line : made->warnings) std::cerr << "rosin: warning: " << line << '\n';
   if (!as_json) print_text(given.output.path == "-" ? std::cerr : std::cout, *made);
@@ -125,6 +141,7 @@ void add_reconstruct(CLI::App& app, exit_code& result) {
   command->add_flag("--paper", given->how.paper, "The processing of Woodhouse, Schumacher & Garoff (2000), for comparison");
   command->add_flag("--frequency-domain", given->how.frequency_domain, "Eqs. (10): the most nearly periodic stretch only, terminations as declared");
   command->add_option("--calibration", given->calibration, "Take the calibration from a file of `rosin fit --json`")->type_name("FILE.json");
+  command->add_option("--model", given->model, "Reconstruct with the corrected model of `rosin diagnose --json`")->type_name("FILE.json")->excludes("--calibration")->excludes("--paper")->excludes("--frequency-domain");
   command->add_option("--report", given->report, "Write a page with figures (needs gnuplot)")->type_name("FILE.html");
   command->add_option("--json", given->json_file, "Write a summary to FILE; without one, or with -, to standard output")->expected(0, 1)->default_str("-")->type_name("FILE");
   command->add_flag("--strict", given->strict, "Exit with 1 on warnings as well");

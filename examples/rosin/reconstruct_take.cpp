@@ -108,6 +108,22 @@ rosin::outcome<process_input> input_of(const rosin::rig& rig, const checked_take
   return in;
 }
 
+/// With the corrected model of a diagnosis, or as the rig file declares it.
+std::optional<rosin::failure> process(const rosin::rig& rig, const rosin::take& take, const checked_take& read, take_reconstruction& r) {
+  if (r.how.model) {
+    auto made = process_with_model(*r.how.model, rig, take.name, r.limits, r.warnings);
+    if (!made) return rosin::failure{made.error()};
+    r.result = *std::move(made);
+    return std::nullopt;
+  }
+  const auto in = input_of(rig, read, r);
+  if (!in) return rosin::failure{in.error()};
+  const bool moving = in->ends[0] || in->ends[1];
+  if (r.how.paper && moving) r.warnings.emplace_back("--paper: terminations are taken as rigid");
+  r.result = r.how.paper ? process_as_paper(*in) : moving ? process_moving_ends(*in) : process_full(*in);
+  return std::nullopt;
+}
+
 /// One period, at the samples of the stretch that it was fitted to.
 std::vector<double> unrolled(const std::vector<double>& one_period, const rosin::periodic_part& part, std::size_t samples) {
   const auto N = one_period.size();
@@ -260,11 +276,7 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   limit_loss(r.before, r.limits, r.warnings);
   if (calibration.rate_Hz != r.rate_Hz)
     r.warnings.push_back("recorded at " + figure(r.rate_Hz, "%.0f") + " Hz, the plucks at " + figure(calibration.rate_Hz, "%.0f") + " Hz");
-  const auto in = input_of(rig, read, r);
-  if (!in) return rosin::failure{in.error()};
-  const bool moving = in->ends[0] || in->ends[1];
-  if (how.paper && moving) r.warnings.emplace_back("--paper: terminations are taken as rigid");
-  r.result = how.paper ? process_as_paper(*in) : moving ? process_moving_ends(*in) : process_full(*in);
+  if (const auto why = process(rig, take, read, r)) return *why;
   if (r.result.ends_settle) r.assumed.emplace_back("the take begins in motion: nothing is given until the terminations have forgotten what was before");
   const auto& m = r.result.motion;
   if (m.known.end <= m.known.begin)

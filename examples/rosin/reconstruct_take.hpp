@@ -5,6 +5,7 @@
 #pragma once
 
 #include "calibration_file.hpp"
+#include "corrected_model.hpp"
 #include "reconstruct_process.hpp"
 
 #include <rosin/condition/ac_coupling.hpp>
@@ -16,6 +17,7 @@ namespace tool {
 struct take_options {
   double pass_Hz = 0, stop_Hz = 0;  ///< 0: the default
   bool fine_tune = true, paper = false, frequency_domain = false;
+  std::optional<corrected_model> model{};  ///< of a diagnosis
 };
 
 /// A further channel against the result.

@@ -9,6 +9,7 @@
 //
 #pragma once
 
+#include <rosin/calibrate/end_fit.hpp>
 #include <rosin/diagnose/pluck_effects.hpp>
 #include <rosin/diagnose/pluck_score.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
@@ -51,7 +52,7 @@ inline std::vector<scored_start> best_starts(const pluck_score& test, const scen
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all[i].gain > 3 && (i == 0 || all[i].gain >= all[i - 1].gain) && (i + 1 == all.size() || all[i].gain > all[i + 1].gain)) peaks.push_back(all[i]);
   std::sort(peaks.begin(), peaks.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
-  if (peaks.size() > most) peaks.resize(most);
+  if (peaks.size() > most) peaks.erase(peaks.begin() + static_cast<std::ptrdiff_t>(most), peaks.end());
   return peaks;
 }
 
@@ -130,10 +131,38 @@ inline beginnings find_beginnings(const scene_data& data, const scene_fit& alrea
   return out;
 }
 
+/// A way to begin that another method has found: all of the values, for the effect with that id.
+struct found_start {
+  std::string id;
+  Eigen::VectorXd value;
+};
+
+/// A support's mode as the fit along a line of complex frequencies sees it (calibrate/end_fit.hpp), which no strong coupling leads
+/// astray; for either end, whichever it chose. It knows of no other effect.
+inline std::vector<found_start> support_starts(const scene_data& data, const std::vector<pluck_effect>& catalogue) {
+  std::vector<found_start> out;
+  const auto supports = [](const pluck_effect& e) { return e.name == "support-resonance"; };
+  if (std::none_of(catalogue.begin(), catalogue.end(), supports)) return out;
+  end_options one;
+  one.most_modes = 1;
+  const auto fitted = fit_ends(data.takes, data.guess, data.options, one);
+  if (!fitted || fitted->modes.empty() || fitted->plucks.value.size() != data.layout.size()) return out;
+  const admittance_mode& mode = fitted->modes.front().mode;
+  for (const pluck_effect& e : catalogue) {
+    if (!supports(e)) continue;
+    pluck_scene probe;
+    const std::array<double, 3> unit{1000, 10, 1};
+    e.apply(probe, unit.data(), 0);
+    const double per_mass = probe.ends[static_cast<std::size_t>(e.place)].modes.front().per_mass_per_s;
+    out.push_back({e.id(), extended(fitted->plucks.value, e, {mode.frequency_Hz, mode.q, mode.per_mass_per_s / per_mass})});
+  }
+  return out;
+}
+
 /// The best of several ways to one effect. Where the model is far off: from the first partials of the first periods on, every start
 /// for two short stages and the best of them further; and all partials at once.
-inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fit& already, const pluck_effect& e, const std::vector<scored_start>& starts, bool strong,
-                                          std::array<double, 2> noise) {
+inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fit& already, const pluck_effect& e, const std::vector<scored_start>& starts,
+                                          const std::vector<found_start>& found, bool strong, std::array<double, 2> noise) {
   const std::vector<pluck_effect> effects = with_one_more(already.effects, e);
   std::optional<scene_fit> best;
   const auto keep = [&](scene_fit f) {
@@ -150,6 +179,8 @@ inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fi
   if (best) further.push_back(fit_scene(data, effects, best->value, {{24, 12, false}, {1000, 12, true}}, noise));
   const auto highest = std::max_element(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
   if (highest != starts.end()) further.push_back(fit_scene(data, effects, from(*highest), {{1000, 12, true}}, noise));
+  for (const found_start& f : found)
+    if (f.id == e.id()) further.push_back(fit_scene(data, effects, f.value, {{1000, 3, true}, {1000, 12, true}}, noise));
   best.reset();
   for (auto& f : further) keep(std::move(f));
   return best;
@@ -158,7 +189,7 @@ inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fi
 /// Over all of the record, with corrections freed in the end. What lies far behind is not followed further.
 inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool strong, std::array<double, 2> noise) {
   constexpr std::size_t most = 5, least = 2;
-  if (fits.size() > most) fits.resize(most);
+  if (fits.size() > most) fits.erase(fits.begin() + most, fits.end());
   while (strong && fits.size() > least && cost_of(fits.back(), noise) > 30 * cost_of(fits.front(), noise)) fits.pop_back();
   for (scene_fit& f : fits) {
     std::vector<fit_stage> rest;
@@ -177,16 +208,53 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
 [[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
                                                             bool strong, std::array<double, 2> noise) {
   const detail::beginnings begin = detail::find_beginnings(data, already, catalogue, strong, noise);
+  const std::vector<detail::found_start> found = strong && already.effects.empty() ? detail::support_starts(data, catalogue) : std::vector<detail::found_start>{};
+  const auto is_found = [&](const pluck_effect& e) { return std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.id == e.id(); }); };
   std::vector<scene_fit> fits;
   for (std::size_t i = 0; i < catalogue.size(); ++i)
-    if (begin.foremost[i])
-      if (auto f = detail::first_fit(data, already, catalogue[i], begin.starts[i], strong, noise)) fits.push_back(*std::move(f));
+    if (begin.foremost[i] || is_found(catalogue[i]))
+      if (auto f = detail::first_fit(data, already, catalogue[i], begin.starts[i], found, strong, noise)) fits.push_back(*std::move(f));
   const auto better = [&](const scene_fit& a, const scene_fit& b) { return detail::cost_of(a, noise) < detail::cost_of(b, noise); };
   std::sort(fits.begin(), fits.end(), better);
   detail::follow_up(data, fits, strong, noise);
   std::sort(fits.begin(), fits.end(), better);
   detail::prefer_over_one_horizon(data, fits, noise);
   return fits;
+}
+
+namespace detail {
+
+/// A fit's effects and values without one of them.
+inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size_t which) {
+  scene_fit out = fit;
+  Eigen::Index at = data.layout.size();
+  for (std::size_t i = 0; i < which; ++i) at += static_cast<Eigen::Index>(fit.effects[i].parameters.size());
+  const auto gone = static_cast<Eigen::Index>(fit.effects[which].parameters.size()), rest = fit.value.size() - at - gone;
+  out.value.resize(at + rest);
+  out.value << fit.value.head(at), fit.value.tail(rest);
+  out.effects.erase(out.effects.begin() + static_cast<std::ptrdiff_t>(which));
+  return out;
+}
+
+}  // namespace detail
+
+/// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and what best takes its
+/// place is kept if the whole becomes likelier by more than `nats`.
+[[nodiscard]] inline scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats, std::array<double, 2> noise) {
+  const std::size_t count = fit.effects.size();
+  for (std::size_t tried = 0, k = 0; tried < count && count > 1; ++tried, k = (k + 1) % count) {
+    scene_fit rest = detail::without(data, fit, k);
+    rest = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true}}, noise);
+    if (!(detail::cost_of(rest, noise) < 1e299)) continue;
+    std::vector<pluck_effect> catalogue;
+    for (const pluck_effect& e : all)
+      if (std::none_of(rest.effects.begin(), rest.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);
+    const auto fits = one_more_effect(data, rest, catalogue, rest.quality.residual_ratio[0] > 0.05, noise);
+    if (fits.empty() || fits.front().horizon_periods != fit.horizon_periods) continue;
+    const double temper = std::max(1.0, fits.front().quality.inflation());
+    if (0.5 * (detail::cost_of(fit, noise) - detail::cost_of(fits.front(), noise)) / temper > nats) fit = fits.front(), tried = 0, k = 0;
+  }
+  return fit;
 }
 
 }  // namespace rosin

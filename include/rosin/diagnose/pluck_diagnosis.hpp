@@ -8,6 +8,8 @@
 //     worth          a further effect takes away at least two thirds of what the model so far leaves beyond the noise, and that is
 //                    at least a hundredth (in amplitude) of what there was to explain: no model of a bead is exact either.
 //
+// Two effects found one after the other may stand in one another's place; each is then taken out and sought anew.
+//
 // The first threshold holds the false-alarm rate of the whole search over the catalogue (its largest gain on plucks without
 // an effect is 3 to 7). Evidence is  ln L - (k / 2) ln n.  Takes that were not fitted are predicted: of them only the instant of
 // release and the strength are free.
@@ -218,7 +220,7 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
     now = tried;
     if (now.quality.inflation() == 1.0 && round > 0) break;
   }
-  d.best = now;
+  d.best = exchanged(d.data, now, all, 5, noise);
   if (d.best.quality.residual_ratio.empty()) d.best = d.base;
   std::sort(d.ranking.begin(), d.ranking.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
   if (!d.ranking.empty())

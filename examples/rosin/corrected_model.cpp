@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "corrected_model.hpp"
+#include "diagnose_parts.hpp"
+
+#include <fstream>
+
+namespace tool {
+
+namespace {
+
+/// The effects of the catalogue that a diagnosis names, in the order in which its calibration holds them.
+std::vector<rosin::pluck_effect> effects_of(const json& diagnosis, const std::vector<rosin::pluck_effect>& catalogue, corrected_model& out) {
+  std::vector<rosin::pluck_effect> found;
+  for (const json& m : diagnosis.at("missing")) {
+    const std::string name = m.at("effect");
+    const auto& where = m.at("where");
+    const std::string place = where.value("end", where.value("channel", std::string{}));
+    const auto e = std::find_if(catalogue.begin(), catalogue.end(), [&](const auto& c) { return c.id() == (place.empty() ? name : name + "@" + place); });
+    if (e != catalogue.end()) found.push_back(*e), out.effects.push_back(name);
+    else if (name == "tension-drift") out.tension_drift = m.at("parameters").at("relative").at("value"), out.effects.push_back(name);
+    else out.passed_over.push_back(name);
+  }
+  return found;
+}
+
+/// A value of the calibration; NaN where it is not there.
+std::array<double, 2> value_of(const json& calibration, const std::string& name) {
+  const auto it = calibration.find(name);
+  if (it == calibration.end() || !it->is_object()) return {NAN, 0};
+  return {it->value("value", NAN), it->value("sd", 0.0)};
+}
+
+}  // namespace
+
+rosin::outcome<corrected_model> read_model(const std::string& path, const rosin::rig& rig, provenance& from) {
+  if (const auto why = from.add_input(path)) return *why;
+  std::ifstream in{path};
+  const json document = json::parse(in, nullptr, false);
+  const auto wrong = [&](const std::string& what) { return rosin::failure{path + ": " + what}; };
+  if (!document.is_object() || !document.contains("missing") || !document.contains("calibration") || !document["calibration"].is_object() || !document["missing"].is_array())
+    return wrong("is no diagnosis (rosin diagnose --json writes one)");
+  const rosin::rig_values values = rosin::values_of(rig);
+  if (!values.impedance_Ns_m) return wrong(rig.file + " does not tell the string's impedance: length_m and tension_N are needed");
+  const auto plucks = plucks_of(rig, values, from);
+  if (!plucks) return rosin::failure{plucks.error()};
+  const json& calibration = document["calibration"];
+  corrected_model out{path, {}, 0, {}, {}, from};
+  const rosin::pluck_layout layout(plucks->takes, plucks->options);
+  const double rate = plucks->takes.front().rate_Hz, pitch = value_of(calibration, layout.name(rosin::pluck_layout::fundamental))[0];
+  const rosin::string_facts facts{pitch, rate, 0.45 * rate, values.impedance_Ns_m->value, values.length_m ? values.length_m->value : 0, plucks->takes.size()};
+  try {
+    auto effects = effects_of(document, rosin::catalogue_without({}, facts, {0.3 * rate, 0.45 * rate}), out);
+    Eigen::Index count = layout.size();
+    for (const auto& e : effects) count += static_cast<Eigen::Index>(e.parameters.size());
+    Eigen::VectorXd value = Eigen::VectorXd::Zero(count), sd = value;
+    for (Eigen::Index p = 0; p < layout.size(); ++p) {
+      const auto [v, s] = value_of(calibration, layout.name(p));
+      if (!std::isfinite(v)) return wrong("calibration has no \"" + layout.name(p) + "\": it was made of other takes than " + rig.file + " names");
+      value[p] = v, sd[p] = s;
+    }
+    Eigen::Index at = layout.size();
+    for (const auto& e : effects)
+      for (const auto& q : e.parameters) {
+        const auto [v, s] = value_of(calibration, e.id() + " " + q.name);
+        if (q.take < 0 && !std::isfinite(v)) return wrong("calibration has no \"" + e.id() + " " + q.name + "\"");
+        const double physical = q.take < 0 ? v : 0;  // of single takes: nothing that a stroke needs
+        value[at] = q.logarithmic && physical > 0 ? std::log(physical) : physical;
+        sd[at++] = q.logarithmic && v > 0 ? s / v : s;
+      }
+    rosin::pluck_diagnosis d{{plucks->takes, plucks->guess, plucks->options, layout}, {}, {}, {}, {}, {}, {}, {}, true, true, 0, 0, 0, {}};
+    d.declared.layout = layout, d.declared.value = value.head(layout.size());
+    d.best.effects = std::move(effects), d.best.value = value, d.best.sd = sd;
+    d.best.covariance = sd.array().square().matrix().asDiagonal();
+    out.plucks = std::make_shared<const rosin::pluck_diagnosis>(std::move(d));
+  } catch (const json::exception& error) {
+    return wrong(std::string{"is no diagnosis: "} + error.what());
+  }
+  return out;
+}
+
+rosin::outcome<processed> process_with_model(const corrected_model& model, const rosin::rig& rig, const std::string& take, const rosin::band& limits,
+                                             std::vector<std::string>& warnings) {
+  provenance own{model.from};
+  std::vector<std::string> said;
+  auto strokes = reconstruct_strokes(rig, rosin::values_of(rig), *model.plucks, model.tension_drift, own, said, take, limits);
+  if (strokes.empty()) return rosin::failure{model.file + ": " + (said.empty() ? take + " could not be reconstructed" : said.back())};
+  warnings.insert(warnings.end(), said.begin(), said.end());
+  diagnosed_stroke& s = strokes.front();
+  processed out;
+  out.used = s.calibration, out.force_N = std::move(s.force_N), out.motion = std::move(s.motion), out.sd = std::move(s.sd);
+  out.why_not_periodic = "not sought with --model";
+  return out;
+}
+
+}  // namespace tool
