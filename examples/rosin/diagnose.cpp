@@ -16,7 +16,8 @@ namespace {
 
 struct options {
   std::string rig, json_file, report;
-  bool force = false;
+  bool force = false, isolability = false;
+  double rate_Hz = 128000, noise_N = 3e-4;
 };
 
 std::string figure(double x, const char* form = "%.4g") { return rosin::detail::figure(x, form); }
@@ -41,7 +42,22 @@ void print_text(const rig_diagnosis& d) {
   for (const auto& line : d.assumed) std::cout << "assumed: " << line << '\n';
 }
 
+exit_code tell_isolability(const options& given, provenance from) {
+  const bool as_json = given.json_file == "-";
+  const auto rig = rosin::load_rig(given.rig, rosin::take_files::to_be_made);
+  if (!rig) return fail(rig.error(), as_json);
+  if (const auto why = from.add_input(rig->file)) return fail(why->message, as_json);
+  auto found = isolability_of(*rig, given.rate_Hz, given.noise_N);
+  if (!found) return fail(found.error(), as_json);
+  (*found)["provenance"] = from.to_json();
+  if (!given.json_file.empty())
+    if (const auto why = save_json(given.json_file, *found, given.force)) return fail(why->message);
+  if (!as_json) std::cout << isolability_text(*found);
+  return exit_code::ok;
+}
+
 exit_code run(const options& given, provenance from) {
+  if (given.isolability) return tell_isolability(given, std::move(from));
   const bool as_json = given.json_file == "-";
   for (const auto* file : {&given.json_file, &given.report})
     if (!file->empty())
@@ -70,6 +86,9 @@ void add_diagnose(CLI::App& app, exit_code& result) {
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
   command->add_option("--json", given->json_file, "Write the diagnosis to FILE; without one, or with -, to standard output")->expected(0, 1)->default_str("-")->type_name("FILE");
   command->add_option("--report", given->report, "Write a page with figures (needs gnuplot)")->type_name("FILE.html");
+  auto* isolability = command->add_flag("--isolability", given->isolability, "What the plucks of the rig file can tell apart, recorded or not")->excludes("--report");
+  command->add_option("--rate", given->rate_Hz, "With --isolability: sampling rate, Hz")->needs(isolability)->check(CLI::Range(8000.0, 1e6))->capture_default_str();
+  command->add_option("--noise", given->noise_N, "With --isolability: noise of a channel, rms, N")->needs(isolability)->check(CLI::PositiveNumber)->capture_default_str();
   add_force_option(*command, given->force);
   command->footer(
       "The model that [model] declares is fitted to the plucks; what is left is set against every effect of the catalogue,\n"

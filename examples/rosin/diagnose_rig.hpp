@@ -82,4 +82,8 @@ struct rig_diagnosis {
 [[nodiscard]] std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d, const provenance& from);
 [[nodiscard]] std::string sentence(const rig_diagnosis& d);
 
+/// What the plucks that a rig file announces can tell apart, whether they have been made or not.
+[[nodiscard]] rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, double noise_N);
+[[nodiscard]] std::string isolability_text(const json& j);
+
 }  // namespace tool

@@ -157,6 +157,7 @@
 #include <rosin/diagnose/contact_width.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
 #include <rosin/diagnose/friction_laws.hpp>
+#include <rosin/diagnose/isolability.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/pluck_candidates.hpp>

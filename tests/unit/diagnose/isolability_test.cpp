@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/isolability.hpp>
+
+#include <doctest/doctest.h>
+
+namespace {
+
+rosin::planned_plucks plan(double seconds) {
+  rosin::planned_plucks p;
+  p.takes = {{"pluck-1", 128000, {}, 1.0, 0.03, 0.3}};
+  p.guess = {.fundamental_Hz = 660, .inharmonicity = 6.5e-5};
+  p.duration_s = seconds;
+  p.noise_N = 1e-3;
+  return p;
+}
+
+}  // namespace
+
+// Specification sheet 6.0: a 1 N pluck at 0.3 of a violin's E string, 1 mN noise; nuisances projected out.
+TEST_CASE("what a pluck can tell apart is what the sheet's Fisher analysis says, and so is what it takes to be seen") {
+  const rosin::string_facts facts{660, 128000, 54e3, 0.175, 0.314, 1};
+  const std::vector<rosin::pluck_effect> effects{rosin::slow_release_effect(facts), rosin::pluck_width_effect(facts), rosin::skew_effect(facts), rosin::crosstalk_effect(facts),
+                                                 rosin::point_mass_effect(facts)};
+  const auto long_look = rosin::isolability_of(plan(0.064), effects);
+  CHECK(long_look.ids[0] == "slow-release");
+  CHECK(long_look.cosine(0, 1) > 0.97);  // release and width: .998 there
+  CHECK(long_look.cosine(2, 3) < 0.5);
+  const auto classes = long_look.classes();
+  CHECK(classes.front().size() == 2);
+  CHECK(long_look.detectable[2] * 1e9 == doctest::Approx(17).epsilon(0.5));   // skew: 17 ns
+  CHECK(long_look.detectable[3] * 1e4 == doctest::Approx(1.6).epsilon(0.6));  // crosstalk: 1.6e-4
+  CHECK(long_look.detectable[4] * 1e9 < 3);                                   // point mass: 0.09 ug at the middle of the string
+  CHECK(long_look.surviving[0] < long_look.surviving[3]);                     // nuisances imitate a slow release best
+  CHECK(long_look.surviving[3] > 0.45);
+  const auto short_look = rosin::isolability_of(plan(0.0031), effects);
+  CHECK(short_look.detectable[3] / long_look.detectable[3] > 2);  // 6e-4 after two periods
+}
