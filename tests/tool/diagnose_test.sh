@@ -89,5 +89,15 @@ variant broken 's/force_N = 1.0/force_N = "much"/'
 expect 2 diagnose broken
 says "rig.toml" "force_N"
 expect 2 diagnose nowhere
+
+# Before anything is recorded: the rig file is enough.
+mkdir -p planned && sed 's/\r//' late/rig.toml >planned/rig.toml
+expect 0 diagnose planned --isolability --json plan.json
+holds plan.json '@{$d->{effects}} == @{$d->{cosine}} && @{$d->{cosine}[0]} == @{$d->{cosine}}' '$d->{cosine}[1][1] == 1' \
+  'grep { my $c = join(" ", @$_); $c =~ /slow-release/ && $c =~ /finite-pluck-width/ } @{$d->{classes}}' \
+  'grep { $_->{effect} eq "channel-skew" && $_->{detectable}{value} < 1e-6 } @{$d->{effects}}'
+expect 0 diagnose planned --isolability
+says "channel-skew: seen from skew_s" "cannot be told apart"
+expect 2 diagnose late --noise 1e-3
 expect 2 diagnose
 finish

@@ -87,6 +87,11 @@ expect 2 reconstruct rig --take bow-1 --calibration rig/rig.toml
 says "is not JSON"
 echo '{"format": "calibration", "kind": "force-plucks", "schema": 1}' >empty.json
 expect 2 reconstruct rig --take bow-1 --calibration empty.json
+expect 2 reconstruct rig --take bow-1 --model empty.json
+says "is no diagnosis"
+echo '{"missing": [], "calibration": {}}' >bare.json
+expect 2 reconstruct rig --take bow-1 --model bare.json
+says 'calibration has no "fundamental_Hz"'
 cp -r rig short
 perl -e 'my $d = "\0" x 400; open my $f, ">:raw", "short/bow-1.wav"; print $f "RIFF", pack("V", 36 + length $d), "WAVEfmt ", pack("VvvVVvv", 16, 1, 2, 48000, 192000, 4, 16), "data", pack("V", length $d), $d'
 expect 2 reconstruct short --take bow-1

@@ -32,6 +32,15 @@ inline double cost_of(const scene_fit& f, const std::array<double, 2>& noise) {
   return std::isfinite(cost) ? cost : 1e300;
 }
 
+/// -2 ln of the evidence but for a constant (Schwarz): what a fit leaves, and what its effects' parameters cost. Corrections cost nothing.
+inline double price_of(const scene_fit& f, const std::array<double, 2>& noise) {
+  double parameters = 0, samples = 1;
+  for (const pluck_effect& e : f.effects)
+    for (const effect_parameter& p : e.parameters) parameters += p.late ? 0 : 1;
+  for (const double n : f.quality.samples) samples += n;
+  return cost_of(f, noise) + parameters * std::log(samples) * std::max(1.0, f.quality.inflation());
+}
+
 /// The starting points of one effect at which the score peaks, the highest first.
 inline std::vector<scored_start> best_starts(const pluck_score& test, const scene_plucks& with, const pluck_effect& e, std::size_t most) {
   std::vector<scored_start> all;
@@ -214,7 +223,7 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
   for (std::size_t i = 0; i < catalogue.size(); ++i)
     if (begin.foremost[i] || is_found(catalogue[i]))
       if (auto f = detail::first_fit(data, already, catalogue[i], begin.starts[i], found, strong, noise)) fits.push_back(*std::move(f));
-  const auto better = [&](const scene_fit& a, const scene_fit& b) { return detail::cost_of(a, noise) < detail::cost_of(b, noise); };
+  const auto better = [&](const scene_fit& a, const scene_fit& b) { return detail::price_of(a, noise) < detail::price_of(b, noise); };
   std::sort(fits.begin(), fits.end(), better);
   detail::follow_up(data, fits, strong, noise);
   std::sort(fits.begin(), fits.end(), better);
@@ -239,7 +248,7 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
 }  // namespace detail
 
 /// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and what best takes its
-/// place is kept if the whole becomes likelier by more than `nats`.
+/// place is kept if the evidence of the whole rises by more than `nats`.
 [[nodiscard]] inline scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats, std::array<double, 2> noise) {
   const std::size_t count = fit.effects.size();
   for (std::size_t tried = 0, k = 0; tried < count && count > 1; ++tried, k = (k + 1) % count) {
@@ -252,7 +261,7 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
     const auto fits = one_more_effect(data, rest, catalogue, rest.quality.residual_ratio[0] > 0.05, noise);
     if (fits.empty() || fits.front().horizon_periods != fit.horizon_periods) continue;
     const double temper = std::max(1.0, fits.front().quality.inflation());
-    if (0.5 * (detail::cost_of(fit, noise) - detail::cost_of(fits.front(), noise)) / temper > nats) fit = fits.front(), tried = 0, k = 0;
+    if (0.5 * (detail::price_of(fit, noise) - detail::price_of(fits.front(), noise)) / temper > nats) fit = fits.front(), tried = 0, k = 0;
   }
   return fit;
 }

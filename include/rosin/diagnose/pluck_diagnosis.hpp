@@ -220,7 +220,7 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
     now = tried;
     if (now.quality.inflation() == 1.0 && round > 0) break;
   }
-  d.best = exchanged(d.data, now, all, 5, noise);
+  d.best = exchanged(d.data, now, all, 1, noise);
   if (d.best.quality.residual_ratio.empty()) d.best = d.base;
   std::sort(d.ranking.begin(), d.ranking.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
   if (!d.ranking.empty())
