@@ -202,7 +202,8 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
   while (strong && fits.size() > least && cost_of(fits.back(), noise) > 30 * cost_of(fits.front(), noise)) fits.pop_back();
   for (scene_fit& f : fits) {
     std::vector<fit_stage> rest;
-    if (strong) rest = {{1000, 40, true}, {}};
+    rest.reserve(3);
+    if (strong) rest.push_back({1000, 40, true}), rest.push_back({});
     const bool corrects = std::any_of(f.effects.begin(), f.effects.end(), [](const pluck_effect& e) {
       return std::any_of(e.parameters.begin(), e.parameters.end(), [](const effect_parameter& p) { return p.late; });
     });
