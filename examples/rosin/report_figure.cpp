@@ -100,7 +100,7 @@ void write_figure(std::ostream& out, const figure& f, std::size_t number, const 
   for (std::size_t i = 0; i < f.panels.size(); ++i) {
     const panel& p = f.panels[i];
     const double below = p.x_label.empty() ? numbers : label;
-    write_panel(out, p, "d" + std::to_string(number) + "_" + std::to_string(i), 1 - (from_top + p.height - below) / height, 1 - (from_top + above) / height, f.width, height);
+    write_panel(out, p, std::string{"d"}.append(std::to_string(number)).append("_").append(std::to_string(i)), 1 - (from_top + p.height - below) / height, 1 - (from_top + above) / height, f.width, height);
     from_top += p.height;
   }
   out << "unset multiplot\nunset output\n";
