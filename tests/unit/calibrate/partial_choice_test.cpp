@@ -10,14 +10,14 @@
 namespace {
 
 using complex = std::complex<double>;
-constexpr double rate_Hz = 160;
+constexpr double baseband_rate_Hz = 160;
 
-std::vector<complex> lines(bool second, double noise) {
+std::vector<complex> drawn_lines(bool second, double noise) {
   std::mt19937_64 random{11};
   std::normal_distribution<double> gauss{0, noise};
   std::vector<complex> z;
   for (int j = 0; j < 480; ++j) {
-    const double t = j / rate_Hz;
+    const double t = j / baseband_rate_Hz;
     z.push_back(std::exp(complex(-1.2, 9) * t) + (second ? 0.6 * std::exp(complex(-0.4, 15) * t) : 0.0) + complex(gauss(random), gauss(random)));
   }
   return z;
@@ -27,9 +27,9 @@ std::vector<complex> lines(bool second, double noise) {
 
 TEST_CASE("one line stays one, two are told apart") {
   for (const bool two : {false, true}) {
-    const auto z = lines(two, 1e-3);
-    const rosin::line_fit one = rosin::fit_one_line(z, rate_Hz, 220, 4);
-    const rosin::line_fit best = rosin::one_or_two_lines(z, rate_Hz, one, 4, 1);
+    const auto z = drawn_lines(two, 1e-3);
+    const rosin::line_fit one = rosin::fit_one_line(z, baseband_rate_Hz, 220, 4);
+    const rosin::line_fit best = rosin::one_or_two_lines(z, baseband_rate_Hz, one, 4, 1);
     REQUIRE(best.model.parts.size() == (two ? 2U : 1U));
     if (!two) CHECK(best.model.parts[0].detuning_rad_s == doctest::Approx(9).epsilon(1e-3));
     else {

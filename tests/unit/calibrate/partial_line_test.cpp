@@ -10,11 +10,11 @@
 namespace {
 
 using complex = std::complex<double>;
-constexpr double rate_Hz = 200;
+constexpr double line_rate_Hz = 200;
 
 std::vector<complex> line(double decay, double detuning, complex amplitude, std::size_t n = 200) {
   std::vector<complex> z;
-  for (std::size_t j = 0; j < n; ++j) z.push_back(amplitude * std::exp(complex(-decay, detuning) * (static_cast<double>(j) / rate_Hz)));
+  for (std::size_t j = 0; j < n; ++j) z.push_back(amplitude * std::exp(complex(-decay, detuning) * (static_cast<double>(j) / line_rate_Hz)));
   return z;
 }
 
@@ -22,7 +22,7 @@ std::vector<complex> line(double decay, double detuning, complex amplitude, std:
 
 TEST_CASE("a damped line is found from near it, amplitude and all") {
   const auto z = line(1.7, 12, {0.3, -0.4});
-  const rosin::line_fit fit = rosin::fit_line(z, rate_Hz, {{{1.0, 1.0, 11.0}}, 440});
+  const rosin::line_fit fit = rosin::fit_line(z, line_rate_Hz, {{{1.0, 1.0, 11.0}}, 440});
   CHECK(fit.model.parts[0].decay_per_s == doctest::Approx(1.7).epsilon(1e-6));
   CHECK(fit.model.parts[0].detuning_rad_s == doctest::Approx(12).epsilon(1e-6));
   CHECK(std::abs(fit.model.parts[0].amplitude - complex(0.3, -0.4)) < 1e-6);
@@ -32,7 +32,7 @@ TEST_CASE("a damped line is found from near it, amplitude and all") {
 TEST_CASE("least-squares amplitudes leave what is orthogonal") {
   const auto z = line(1, 5, {2, 1});
   rosin::line_model m{{{1.0, 1.0, 5.0}}, 0};
-  CHECK(rosin::solve_amplitudes(z, rate_Hz, m) < 1e-9);
+  CHECK(rosin::solve_amplitudes(z, line_rate_Hz, m) < 1e-9);
   CHECK(std::abs(m.parts[0].amplitude - complex(2, 1)) < 1e-9);
 }
 

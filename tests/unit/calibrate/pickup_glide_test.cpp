@@ -11,7 +11,7 @@
 
 namespace {
 
-constexpr double rate_Hz = test::pickup_rate_Hz;
+constexpr double glide_rate_Hz = test::pickup_rate_Hz;
 
 using test::plucked;
 
@@ -20,7 +20,7 @@ using test::plucked;
 TEST_CASE("a glide of pitch is found, and none is found where there is none") {
   for (const double glide : {0.0, 4e-3}) {
     const auto x = plucked(247.1, 6e-5, 1e-4, 3, glide);
-    const rosin::baseband_bank bank{x, rate_Hz, 40};
+    const rosin::baseband_bank bank{x, glide_rate_Hz, 40};
     std::vector<rosin::partial_track> tracks;
     for (int n = 1; n <= 6; ++n)
       if (auto t = rosin::track_partial(bank, n, n * 247.1 * std::sqrt(1 + 6e-5 * n * n), 5, 0.2, 1.4)) tracks.push_back(*std::move(t));

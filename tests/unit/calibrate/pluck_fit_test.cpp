@@ -12,11 +12,11 @@
 namespace {
 
 using layout = rosin::pluck_layout;
-const rosin::modal_rig rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}}};
+const rosin::modal_rig guitar_rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}}};
 
 rosin::pluck_take pluck(double position, double force_N, std::uint64_t seed, double duration_s = 0.14, double ac_Hz = 0,
                         rosin::damping_convention damping = rosin::damping_convention::viscous) {
-  rosin::modal_rig with = rig;
+  rosin::modal_rig with = guitar_rig;
   with.damping = damping;
   const auto made = rosin::simulate_pluck(with, {.position = position, .force_N = force_N, .release_s = 0.004, .duration_s = duration_s});
   REQUIRE(made);
@@ -42,7 +42,7 @@ TEST_CASE("one pluck gives string, position, release, ratio of gains and noise, 
   REQUIRE_MESSAGE(fit, fit.error());
   CHECK(fit->converged);
   CHECK(sigmas(*fit, layout::fundamental, 659.69) < 4);
-  CHECK(sigmas(*fit, layout::inharmonicity, rig.string.inharmonicity()) < 4);
+  CHECK(sigmas(*fit, layout::inharmonicity, guitar_rig.string.inharmonicity()) < 4);
   CHECK(sigmas(*fit, layout::inverse_quality, 1e-3) < 4);
   CHECK(sigmas(*fit, layout::convention, -1) < 4);
   CHECK(sigmas(*fit, layout::first_position, 0.3) < 4);

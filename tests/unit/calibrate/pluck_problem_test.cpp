@@ -8,7 +8,7 @@
 
 namespace {
 
-constexpr double rate_Hz = 96e3;
+constexpr double problem_rate_Hz = 96e3;
 
 /// Two short noisy takes; what they contain does not matter, only that sums over them are right.
 std::vector<rosin::pluck_take> takes() {
@@ -17,7 +17,7 @@ std::vector<rosin::pluck_take> takes() {
   std::vector<rosin::pluck_take> out(2);
   for (std::size_t i = 0; i < 2; ++i) {
     out[i].name = "take";
-    out[i].rate_Hz = rate_Hz;
+    out[i].rate_Hz = problem_rate_Hz;
     out[i].position = 0.3;
     for (auto& c : out[i].force_N) {
       c.resize(1500);

@@ -8,17 +8,17 @@
 
 namespace {
 
-constexpr double rate_Hz = 128e3;
+constexpr double start_rate_Hz = 128e3;
 
 /// An ideal string without loss, from its partials.
 rosin::pluck_take ideal(double f0, double position, double release_s) {
   rosin::pluck_take take;
   take.name = "ideal";
-  take.rate_Hz = rate_Hz;
+  take.rate_Hz = start_rate_Hz;
   take.position = position;
   for (auto& channel : take.force_N) channel.assign(12000, 0.0);
   for (std::size_t i = 0; i < 12000; ++i) {
-    const double t = std::max(0.0, static_cast<double>(i) / rate_Hz - release_s);
+    const double t = std::max(0.0, static_cast<double>(i) / start_rate_Hz - release_s);
     for (int n = 1; n < 40; ++n) {
       const double part = 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) * std::cos(2 * std::numbers::pi * n * f0 * t) *
                           std::exp(-std::pow(n / 25.0, 2));

@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr double rate = 128e3;
+constexpr double take_rate_Hz = 128e3;
 
 /// Twelve harmonics of a bowed string, none of them near the record's ends' step.
 double harmonic_force(double t, std::size_t c) {
@@ -22,7 +22,7 @@ double harmonic_force(double t, std::size_t c) {
 }  // namespace
 
 TEST_CASE("a resonance, a skew, crosstalk and hum are taken out of a stroke") {
-  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = rate, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = take_rate_Hz, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
   const auto layout = test::two_plucks({});
   const rosin::scene_data data{{}, {}, {}, layout};
   rosin::scene_fit fit;
@@ -34,7 +34,7 @@ TEST_CASE("a resonance, a skew, crosstalk and hum are taken out of a stroke") {
   const rosin::sensor_response near{.resonance_Hz = 15e3, .q = 9, .delay_s = -1e-6}, far{.delay_s = 1e-6};
   std::array<std::vector<double>, 2> seen{std::vector<double>(20000), std::vector<double>(20000)};
   for (std::size_t i = 0; i < 20000; ++i) {
-    const double t = static_cast<double>(i) / rate;
+    const double t = static_cast<double>(i) / take_rate_Hz;
     std::array<double, 2> y{};
     for (std::size_t c = 0; c < 2; ++c)
       for (int n = 1; n <= 12; ++n) {
@@ -46,10 +46,10 @@ TEST_CASE("a resonance, a skew, crosstalk and hum are taken out of a stroke") {
     seen[0][i] = y[0] + 0.03 * y[1] + hum;
     seen[1][i] = y[1] + 0.03 * y[0] + 0.5 * hum;
   }
-  rosin::undo_sensors(data, fit, seen, rate, 40e3);
+  rosin::undo_sensors(data, fit, seen, take_rate_Hz, 40e3);
   double worst = 0;
   for (std::size_t i = 3000; i < 17000; ++i)
-    for (std::size_t c = 0; c < 2; ++c) worst = std::max(worst, std::abs(seen[c][i] - harmonic_force(static_cast<double>(i) / rate, c)));
+    for (std::size_t c = 0; c < 2; ++c) worst = std::max(worst, std::abs(seen[c][i] - harmonic_force(static_cast<double>(i) / take_rate_Hz, c)));
   CHECK(worst < 2e-3);  // what the record's ends and the hum's fit leave of 0.6 N
   CHECK(rosin::string_is_plain(fit.effects));
   CHECK_FALSE(rosin::string_is_plain({rosin::point_mass_effect(facts)}));

@@ -8,7 +8,7 @@
 
 namespace {
 
-const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+const rosin::string_facts guitar_facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
 
 }  // namespace
 
@@ -17,7 +17,7 @@ TEST_CASE("every effect of the catalogue has a name of its own, starts inside it
   bare.string = {659.69, 6.49e-5, {900, 0, 0}, 0};
   const auto plain = rosin::scene_lines(bare, 0.3, {40e3, 60e3}, 80, {});
   std::set<std::string> ids;
-  for (const auto& e : rosin::pluck_effects(facts)) {
+  for (const auto& e : rosin::pluck_effects(guitar_facts)) {
     CAPTURE(e.id());
     if (e.name != "mains-hum") CHECK(ids.insert(e.id()).second);
     REQUIRE_FALSE(e.starts.empty());

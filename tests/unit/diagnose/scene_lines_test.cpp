@@ -5,8 +5,8 @@
 
 namespace {
 
-constexpr rosin::band limits{45e3, 60e3};
-rosin::pluck_scene scene() {
+constexpr rosin::band upper_band{45e3, 60e3};
+rosin::pluck_scene lines_scene() {
   rosin::pluck_scene s;
   s.string = {659.69, 6.49e-5, {900, 0, 0}, 0};
   return s;
@@ -20,9 +20,9 @@ double at(const std::vector<rosin::damped_line>& lines, std::size_t c, double t)
 }  // namespace
 
 TEST_CASE("a slow release is the fast one smeared by the rate at which the wire lets go") {
-  auto slow = scene();
+  auto slow = lines_scene();
   slow.release_duration_s = 60e-6;
-  const auto sharp = rosin::scene_lines(scene(), 0.3, limits, 100, {}), smeared = rosin::scene_lines(slow, 0.3, limits, 100, {});
+  const auto sharp = rosin::scene_lines(lines_scene(), 0.3, upper_band, 100, {}), smeared = rosin::scene_lines(slow, 0.3, upper_band, 100, {});
   constexpr int steps = 2000;
   for (const double t : {0.0005, 0.00161, 0.0042}) {
     double sum = 0;
@@ -35,9 +35,9 @@ TEST_CASE("a slow release is the fast one smeared by the rate at which the wire 
 }
 
 TEST_CASE("a sensor that resonates follows its differential equation, driven by the force") {
-  auto with = scene();
+  auto with = lines_scene();
   with.sensors[1] = {.resonance_Hz = 9000, .q = 8};
-  const auto force = rosin::scene_lines(scene(), 0.3, limits, 100, {}), seen = rosin::scene_lines(with, 0.3, limits, 100, {});
+  const auto force = rosin::scene_lines(lines_scene(), 0.3, upper_band, 100, {}), seen = rosin::scene_lines(with, 0.3, upper_band, 100, {});
   const double w = 2 * std::numbers::pi * 9000, h = 1e-7;
   for (const double t : {0.0003, 0.0011, 0.0031}) {
     const double y = at(seen, 1, t), d1 = (at(seen, 1, t + h) - at(seen, 1, t - h)) / (2 * h), d2 = (at(seen, 1, t + h) - 2 * y + at(seen, 1, t - h)) / (h * h);
@@ -49,17 +49,17 @@ TEST_CASE("a sensor that resonates follows its differential equation, driven by 
 }
 
 TEST_CASE("crosstalk mixes, a skew turns, and two planes share the force") {
-  auto with = scene();
-  const auto bare = rosin::scene_lines(with, 0.3, limits, 100, {});
+  auto with = lines_scene();
+  const auto bare = rosin::scene_lines(with, 0.3, upper_band, 100, {});
   with.crosstalk = 0.02;
-  const auto mixed = rosin::scene_lines(with, 0.3, limits, 100, {});
+  const auto mixed = rosin::scene_lines(with, 0.3, upper_band, 100, {});
   CHECK(at(mixed, 0, 0.002) == doctest::Approx(at(bare, 0, 0.002) + 0.02 * at(bare, 1, 0.002)));
-  with = scene();
+  with = lines_scene();
   with.sensors[1].delay_s = 3e-6;
-  CHECK(at(rosin::scene_lines(with, 0.3, limits, 100, {}), 1, 0.002) == doctest::Approx(at(bare, 1, 0.002 - 3e-6)));
-  with = scene();
+  CHECK(at(rosin::scene_lines(with, 0.3, upper_band, 100, {}), 1, 0.002) == doctest::Approx(at(bare, 1, 0.002 - 3e-6)));
+  with = lines_scene();
   with.detuning = 1e-3, with.coupling = 0.2;
-  const auto both = rosin::scene_lines(with, 0.3, limits, 100, {});
+  const auto both = rosin::scene_lines(with, 0.3, upper_band, 100, {});
   CHECK(both.size() == 2 * bare.size());
   CHECK(at(both, 0, 0) == doctest::Approx(at(bare, 0, 0)).epsilon(1e-3));
 }

@@ -7,7 +7,7 @@ namespace {
 
 using complex = std::complex<double>;
 
-rosin::pluck_scene scene() {
+rosin::pluck_scene response_scene() {
   rosin::pluck_scene s;
   s.string = {612.87, 6.6e-5, {1e9, 0, 0}, 0};
   return s;
@@ -26,7 +26,7 @@ complex by_modes(const rosin::pluck_scene& p, double a, double b, complex s) {
 }  // namespace
 
 TEST_CASE("mobility in closed form is the sum over modes, anywhere in the complex plane") {
-  const auto p = scene();
+  const auto p = response_scene();
   for (const complex s : {complex(300, 9000), complex(-50, 41000), complex(1000, 150000)})
     for (const auto& [a, b] : {std::pair{0.3, 0.3}, std::pair{0.2, 0.71}}) {
       const rosin::string_at string(p, s);
@@ -37,13 +37,13 @@ TEST_CASE("mobility in closed form is the sum over modes, anywhere in the comple
 }
 
 TEST_CASE("slowly, the ends share a force by the lever's law") {
-  const rosin::string_at string(scene(), {0.01, 1});
+  const rosin::string_at string(response_scene(), {0.01, 1});
   CHECK(std::abs(string.end_force(0, 0.3) / string.sine() - 0.7) < 1e-3);
   CHECK(std::abs(string.end_force(1, 0.3) / string.sine() - 0.3) < 1e-3);
 }
 
 TEST_CASE("a load changes the loop, one without weight does not") {
-  auto with = scene();
+  auto with = response_scene();
   const complex s{-10, 30000};
   const auto bare = rosin::close_loop(with, 0.3, s);
   with.scatterers = {{.position = 0.4}};
