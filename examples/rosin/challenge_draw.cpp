@@ -137,8 +137,8 @@ hidden_effect under_the_bow(const std::string& name, challenge_rig& r, source& s
 void draw_other_string(challenge_rig& r, source& s) {
   auto& t = r.base.rig.string;
   auto& d = r.base.declared.string;
-  const double length = 1, tension = s.uniform(0.6, 1.25), pitch = evenly_in_log(s, 0.45, 1.25), stiff = evenly_in_log(s, 0.4, 2.0);
-  for (auto* p : {&t, &d}) p->length_m *= length, p->tension_N *= tension, p->fundamental_Hz *= pitch, p->bending_stiffness_Nm2 *= stiff;
+  const double tension = s.uniform(0.6, 1.25), pitch = evenly_in_log(s, 0.45, 1.25), stiff = evenly_in_log(s, 0.4, 2.0);
+  for (auto* p : {&t, &d}) p->tension_N *= tension, p->fundamental_Hz *= pitch, p->bending_stiffness_Nm2 *= stiff;
   r.base.law = rosin::velocity_curve<rosin::two_exponential_curve<double>>{r.base.steady_friction};
 }
 

@@ -30,7 +30,6 @@ struct unsteady_rod {
 };
 
 struct played {
-  bool bowed = false;
   std::string name;
   std::array<std::vector<double>, 2> force_N;  ///< as the converters get them
 };
@@ -41,7 +40,7 @@ public:
 
   [[nodiscard]] played pluck(std::size_t i) const {
     const auto& base = rig_.base.plucks[i];
-    const rosin::burdened_pluck wire{base.position + rig_.pluck_shift, base.force_N, base.release_s + lead_s_, rig_.release_duration_s, rig_.pluck_width_m};
+    const rosin::burdened_pluck wire{base.position, base.force_N, base.release_s + lead_s_, rig_.release_duration_s};
     const auto run = [&](const rosin::modal_rig& string, double share) {
       auto one = wire;
       one.force_N *= share;
@@ -54,7 +53,7 @@ public:
       across.string.tension_N *= std::pow(1 + rig_.detuning, 2);  // the same string with other supports: only its pitch differs
       mix(steps, run(across, std::sin(rig_.pluck_angle_rad)));
     }
-    return finish("pluck-" + std::to_string(i + 1), false, std::move(steps));
+    return finish("pluck-" + std::to_string(i + 1), std::move(steps));
   }
 
   [[nodiscard]] played stroke(std::size_t i) const {
@@ -64,7 +63,7 @@ public:
     };
     auto steps = rig_.bristles_N_m > 0 ? run(bristles(i)) : std::visit(run, rig_.base.law);
     if (rig_.detuning != 0) mix(steps, {});
-    return finish("bow-" + std::to_string(i + 1), true, std::move(steps));
+    return finish("bow-" + std::to_string(i + 1), std::move(steps));
   }
 
 private:
@@ -78,9 +77,9 @@ private:
       for (std::size_t n = 0; n < along.end_N[e].size(); ++n)
         along.end_N[e][n] = std::cos(rig_.sensor_angle_rad) * along.end_N[e][n] + (across.end_N[e].empty() ? 0 : std::sin(rig_.sensor_angle_rad) * across.end_N[e][n]);
   }
-  [[nodiscard]] played finish(std::string name, bool bowed, rosin::burdened_steps steps) const {
+  [[nodiscard]] played finish(std::string name, rosin::burdened_steps steps) const {
     rosin::disturb(steps.end_N, rig_.faults, step_);
-    return {bowed, std::move(name), {decimate_.points(steps.end_N[0]), decimate_.points(steps.end_N[1])}};
+    return {std::move(name), {decimate_.points(steps.end_N[0]), decimate_.points(steps.end_N[1])}};
   }
 
   static constexpr double step_ = 1.0 / 128000 / oversampling, limit_Hz = 250e3;

@@ -16,10 +16,9 @@ rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, doubl
     if (take.kind == rosin::take_kind::pluck && position) plan.takes.push_back({take.name, rate_Hz, {}, take.force_N.value_or(1), take.force_tolerance.value_or(0.03), *position});
   }
   if (plan.takes.empty()) return rosin::failure{rig.file + ": no pluck with a position is announced"};
-  const std::vector<std::string> physics = rig.model ? rig.model->physics : std::vector<std::string>{};
-  const auto has = [&](const char* name) { return std::find(physics.begin(), physics.end(), name) != physics.end(); };
+  const auto physics = physics_of(rig);
   plan.guess = guess_of(rig, values);
-  plan.options.stiffness = has("bending-stiffness"), plan.options.internal_loss = has("frequency-dependent-loss"), plan.options.air_loss = has("air-loss");
+  plan.options = options_for(physics);
   if (!plan.options.stiffness) plan.guess.inharmonicity = 0;
   plan.noise_N = noise_N;
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;

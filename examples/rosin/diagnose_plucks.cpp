@@ -4,27 +4,15 @@
 
 namespace tool {
 
-namespace {
-
-bool has(const std::vector<std::string>& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
-
-std::vector<std::string> physics_of(const rosin::rig& rig) { return rig.model ? rig.model->physics : std::vector<std::string>{}; }
-
-}  // namespace
-
 rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from) {
   rig_plucks plucks = read_plucks(rig, from);
-  plucks_to_diagnose out{std::move(plucks.takes), std::move(plucks.held_out), guess_of(rig, values), {}, std::move(plucks.warnings)};
+  plucks_to_diagnose out{std::move(plucks.takes), std::move(plucks.held_out), guess_of(rig, values), options_for(physics_of(rig)), std::move(plucks.warnings)};
   if (out.takes.empty() && out.held.empty()) return rosin::failure{rig.file + ": no pluck to compare with"};
   if (out.takes.empty()) return rosin::failure{rig.file + ": every pluck is marked hold_out: none is left to fit"};
   if (out.held.empty() && out.takes.size() > 1) {  // the last of several: one that nothing is fitted to
     out.held.push_back(std::move(out.takes.back()));
     out.takes.pop_back();
   }
-  const auto physics = physics_of(rig);
-  out.options.stiffness = has(physics, "bending-stiffness");
-  out.options.internal_loss = has(physics, "frequency-dependent-loss");
-  out.options.air_loss = has(physics, "air-loss");
   if (!out.options.stiffness) out.guess.inharmonicity = 0;
   return out;
 }

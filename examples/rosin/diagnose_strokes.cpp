@@ -28,10 +28,6 @@ rosin::calibration calibration_with(const rosin::pluck_diagnosis& p, double decl
   return rosin::calibration_from(fit, declared, z, values.impedance_Ns_m->sd / z);
 }
 
-rosin::pluck_scene scene_of(const rosin::pluck_diagnosis& p) {
-  return rosin::scene_plucks(p.data.layout, p.data.guess.ac_coupled_Hz, p.best.effects).scene(p.best.value, 0);
-}
-
 rosin::bow_motion<double> motion_of(const diagnosed_stroke& s, const rosin::pluck_scene& scene, const rosin::band& limits) {
   if (scene.plain_string()) return rosin::reconstructor<double>(s.calibration.at, limits, s.rate_Hz)(s.force_N[0], s.force_N[1]);
   return rosin::reconstruct_loaded(scene, s.calibration.at, s.force_N, limits, s.rate_Hz);
@@ -41,20 +37,15 @@ rosin::bow_motion<double> motion_of(const diagnosed_stroke& s, const rosin::pluc
 
 std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, double tension_drift,
                                                   provenance& from, std::vector<std::string>& warnings, const std::string& only, std::optional<rosin::band> band) {
-  const rosin::pluck_scene scene = scene_of(plucks);
+  const rosin::pluck_scene scene = rosin::scene_of(plucks.data, plucks.best);
   std::vector<diagnosed_stroke> out;
   for (const auto& take : rig.takes) {
     if (take.kind != rosin::take_kind::bow || (!only.empty() && take.name != only)) continue;
     const auto position = rig.position_of(take);
-    const auto read = read_take(rig, take, from);
-    if (!read || !position) {
-      warnings.push_back(take.name + ": left out: " + (read ? "its position is unknown" : read.error()));
-      continue;
-    }
-    if (rosin::has_error(read->check.findings)) {
-      for (const auto& f : read->check.findings)
-        if (f.level == rosin::severity::error) warnings.push_back(sentence(rig, f));
-      warnings.push_back(take.name + ": left out for the error above");
+    const auto read = read_telling(rig, take, from, warnings);
+    if (!read) continue;
+    if (!position || rosin::has_error(read->check.findings)) {
+      warnings.push_back(take.name + ": left out " + (position ? "for the error above" : "as its position is unknown"));
       continue;
     }
     diagnosed_stroke s;
@@ -92,7 +83,7 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
 rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks) {
   const double rate = strokes.front().rate_Hz;
   const rosin::band limits{0.30 * rate, 0.45 * rate};
-  const rosin::pluck_scene scene = scene_of(plucks);
+  const rosin::pluck_scene scene = rosin::scene_of(plucks.data, plucks.best);
   if (!scene.plain_string())
     return rosin::search_tension_drift(strokes.size(), [&](std::size_t i, double relative) {
       diagnosed_stroke s = strokes[i];

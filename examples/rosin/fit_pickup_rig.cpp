@@ -78,15 +78,8 @@ rosin::outcome<pickup_calibration> calibrate_pickups(const rosin::rig& rig, prov
   for (const auto& take : rig.takes) {
     bar.step();
     if (take.kind != rosin::take_kind::pluck || take.hold_out) continue;
-    const auto read = read_take(rig, take, from);
-    if (!read) {
-      out.warnings.push_back(take.name + ": left out: " + read.error());
-      out.incomplete = true;
-      continue;
-    }
-    for (const auto& f : read->check.findings)
-      if (f.level != rosin::severity::note) out.warnings.push_back(sentence(rig, f));
-    fit_take(rig, take, *read, facts, out);
+    if (const auto read = read_telling(rig, take, from, out.warnings)) fit_take(rig, take, *read, facts, out);
+    else out.incomplete = true;
   }
   if (!out.results.empty()) return out;
   const bool any = std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::pluck && !t.hold_out; });

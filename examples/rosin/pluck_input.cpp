@@ -42,20 +42,10 @@ rig_plucks read_plucks(const rosin::rig& rig, provenance& from) {
   for (const auto& take : rig.takes) {
     if (take.kind != rosin::take_kind::pluck) continue;
     bar.step();
-    const auto read = read_take(rig, take, from);
-    if (!read) {
-      out.warnings.push_back(take.name + ": left out: " + read.error());
-      out.incomplete = true;
-      continue;
-    }
-    for (const auto& f : read->check.findings)
-      if (f.level != rosin::severity::note) out.warnings.push_back(sentence(rig, f));
-    if (rosin::has_error(read->check.findings)) {
-      out.warnings.push_back(take.name + ": left out for the error above");
-      out.incomplete = true;
-      continue;
-    }
-    auto pluck = pluck_of(rig, take, *read, out.warnings);
+    const auto read = read_telling(rig, take, from, out.warnings);
+    const bool sound = read && !rosin::has_error(read->check.findings);
+    if (read && !sound) out.warnings.push_back(take.name + ": left out for the error above");
+    auto pluck = sound ? pluck_of(rig, take, *read, out.warnings) : std::nullopt;
     if (!pluck) out.incomplete = true;
     else (take.hold_out ? out.held_out : out.takes).push_back(*std::move(pluck));
   }
@@ -71,6 +61,15 @@ rosin::pluck_guess guess_of(const rosin::rig& rig, const rosin::rig_values& valu
   if (values.bending_stiffness_Nm2 && values.tension_N && values.length_m)
     guess.inharmonicity = std::pow(std::numbers::pi / values.length_m->value, 2) * values.bending_stiffness_Nm2->value / values.tension_N->value;
   return guess;
+}
+
+std::vector<std::string> physics_of(const rosin::rig& rig) { return rig.model ? rig.model->physics : std::vector<std::string>{}; }
+
+rosin::pluck_options options_for(const std::vector<std::string>& physics) {
+  const auto has = [&](const char* name) { return std::find(physics.begin(), physics.end(), name) != physics.end(); };
+  rosin::pluck_options out;
+  out.stiffness = has("bending-stiffness"), out.internal_loss = has("frequency-dependent-loss"), out.air_loss = has("air-loss");
+  return out;
 }
 
 }  // namespace tool

@@ -19,6 +19,10 @@ struct rig_plucks {
 /// Reads every pluck; those with an error are left out and named. All that are to be fitted have one rate: that of the first.
 [[nodiscard]] rig_plucks read_plucks(const rosin::rig& rig, provenance& from);
 
+/// The effects that [model] physics declares, and what of them a fit of plucks has options for.
+[[nodiscard]] std::vector<std::string> physics_of(const rosin::rig& rig);
+[[nodiscard]] rosin::pluck_options options_for(const std::vector<std::string>& physics);
+
 /// Nominal values; of the rig's declared inharmonicity only where it is known.
 [[nodiscard]] rosin::pluck_guess guess_of(const rosin::rig& rig, const rosin::rig_values& values);
 

@@ -21,6 +21,17 @@ rosin::outcome<checked_take> read_take(const rosin::rig& rig, const rosin::take&
   return checked_take{*std::move(signals), std::move(check)};
 }
 
+std::optional<checked_take> read_telling(const rosin::rig& rig, const rosin::take& take, provenance& from, std::vector<std::string>& warnings) {
+  auto out = read_take(rig, take, from);
+  if (!out) {
+    warnings.push_back(take.name + ": left out: " + out.error());
+    return std::nullopt;
+  }
+  for (const auto& f : out->check.findings)
+    if (f.level != rosin::severity::note) warnings.push_back(sentence(rig, f));
+  return *std::move(out);
+}
+
 rosin::outcome<checked_take> read_sound_take(const rosin::rig& rig, const rosin::take& take, provenance& from) {
   auto out = read_take(rig, take, from);
   if (!out || !rosin::has_error(out->check.findings)) return out;

@@ -24,7 +24,10 @@ struct checked_take {
 /// A take read and checked; the recording joins the inputs. What the checks found is in the result, errors as well.
 [[nodiscard]] rosin::outcome<checked_take> read_take(const rosin::rig& rig, const rosin::take& take, provenance& from);
 
-/// The same, but a take with an error is refused: nothing sound can be calculated from it.
+/// The same, and whatever is more than a note joins the warnings; nothing where the take cannot be read at all.
+[[nodiscard]] std::optional<checked_take> read_telling(const rosin::rig& rig, const rosin::take& take, provenance& from, std::vector<std::string>& warnings);
+
+/// As read_take, but a take with an error is refused: nothing sound can be calculated from it.
 [[nodiscard]] rosin::outcome<checked_take> read_sound_take(const rosin::rig& rig, const rosin::take& take, provenance& from);
 
 /// "pluck-1.wav: take pluck-1 (rig.toml:34), channel near, 0.0041 s: clipped ...; lower the gain ..."

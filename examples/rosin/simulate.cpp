@@ -167,10 +167,8 @@ json result_json(const simulation_plan& plan, const std::vector<simulated_take>&
 }
 
 rosin::outcome<std::string> declared_text(const std::string& file) {
-  std::ifstream in{file, std::ios::binary};
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) return rosin::failure{file + ": cannot be read"};
-  return declaration(text.str(), file);
+  auto text = read_text(file);
+  return text ? declaration(*text, file) : text;
 }
 
 exit_code run(const options& given, provenance from) {

@@ -5,6 +5,7 @@
 #include <rosin/version.hpp>
 
 #include <algorithm>
+#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -73,6 +74,13 @@ std::set<line_number> erase_secrets(toml::table& root, const std::vector<std::st
 }
 
 }  // namespace
+
+rosin::outcome<std::string> read_text(const std::string& file) {
+  std::ifstream in{file, std::ios::binary};
+  std::ostringstream out;
+  if (!in || !(out << in.rdbuf())) return rosin::failure{file + ": cannot be read"};
+  return out.str();
+}
 
 rosin::outcome<std::string> declaration(const std::string& text, const std::string& file) {
   auto parsed = rosin::detail::parse_toml(text, file);

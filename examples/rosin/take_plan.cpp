@@ -14,13 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-rosin::outcome<std::string> read_text(const std::string& path) {
-  std::ifstream in{path, std::ios::binary};
-  std::ostringstream out;
-  if (!in || !(out << in.rdbuf())) return rosin::failure{path + ": cannot be read"};
-  return out.str();
-}
-
 /// Without [[take]] tables; what is indented or commented between them goes too.
 std::string without_takes(const std::string& text) {
   std::istringstream lines{text};

@@ -45,6 +45,7 @@
 #include <rosin/condition/fourier_shift.hpp>
 #include <rosin/condition/fractional_delay.hpp>
 #include <rosin/condition/fractional_delay_design.hpp>
+#include <rosin/condition/held_record.hpp>
 #include <rosin/condition/low_pass.hpp>
 #include <rosin/condition/overlap_save.hpp>
 #include <rosin/condition/overlap_save_design.hpp>
@@ -127,6 +128,7 @@
 #include <rosin/simulate/burdened_string.hpp>
 #include <rosin/simulate/burdened_take.hpp>
 #include <rosin/simulate/converter.hpp>
+#include <rosin/simulate/mode_step.hpp>
 #include <rosin/simulate/modal_bank.hpp>
 #include <rosin/simulate/modal_contact.hpp>
 #include <rosin/simulate/modal_decimator.hpp>

@@ -8,8 +8,8 @@
 #pragma once
 
 #include <rosin/condition/ac_coupling.hpp>
+#include <rosin/condition/held_record.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
-#include <rosin/math/fft.hpp>
 
 namespace rosin {
 
@@ -35,22 +35,10 @@ inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmon
 
 /// Divides a channel by its sensor's response below `edge_Hz`, the record held at its ends in the padding.
 inline void divide_by_sensor(std::vector<double>& x, const sensor_response& sensor, double rate_Hz, double edge_Hz) {
-  const std::size_t pad = 4096, size = fast_size(x.size() + 2 * pad);
-  std::vector<double> wide(size);
-  for (std::size_t i = 0; i < size; ++i) wide[i] = x[std::min(x.size() - 1, i < pad ? 0 : i - pad)];
-  for (std::size_t i = x.size() + pad; i < size; ++i) {  // back to where it begins, gently
-    const double u = static_cast<double>(i - x.size() - pad) / static_cast<double>(size - x.size() - pad);
-    wide[i] += (wide[0] - x.back()) * 0.5 * (1 - std::cos(std::numbers::pi * u));
-  }
-  eigen_fft<double> fft(size);
-  std::vector<std::complex<double>> bins(size / 2 + 1);
-  fft.forward(wide.data(), bins.data());
-  for (std::size_t k = 1; k < bins.size(); ++k) {
-    const double f = std::min(edge_Hz, static_cast<double>(k) * rate_Hz / static_cast<double>(size));
-    bins[k] /= sensor({0, 2 * std::numbers::pi * f});
-  }
-  fft.inverse(bins.data(), wide.data());
-  std::copy_n(wide.begin() + pad, x.size(), x.begin());
+  held_record record(x.size(), 4096);
+  auto bins = record.spectrum(x);
+  for (std::size_t k = 1; k < bins.size(); ++k) bins[k] /= sensor({0, 2 * std::numbers::pi * std::min(edge_Hz, record.frequency_Hz(k, rate_Hz))});
+  x = record.record(std::move(bins));
 }
 
 }  // namespace detail
@@ -74,7 +62,7 @@ inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::arra
     }
     at += static_cast<Eigen::Index>(e.parameters.size());
   }
-  const pluck_scene scene = scene_plucks(data.layout, data.guess.ac_coupled_Hz, fit.effects).scene(fit.value, 0);
+  const pluck_scene scene = scene_of(data, fit);
   if (!scene.hum.empty()) {  // more harmonics than plucks need to tell, but none near what the string itself does
     const double mains_Hz = scene.hum.front().frequency_Hz;
     const int harmonics = std::clamp(static_cast<int>(0.6 * scene.string.fundamental_Hz / mains_Hz), 1, 12);

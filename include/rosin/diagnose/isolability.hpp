@@ -91,9 +91,9 @@ public:
     Eigen::Index at = 0;
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const auto before = static_cast<Eigen::Index>(std::lround(release_s * takes[t].rate_Hz)), n = samples(t);
-      const auto held = pluck_layout_static(takes[t]);
+      const auto held = static_forces(takes[t].position);
       for (std::size_t c = 0; c < 2; ++c) {
-        takes[t].force_N[c].assign(static_cast<std::size_t>(before), held[c]);
+        takes[t].force_N[c].assign(static_cast<std::size_t>(before), takes[t].strength_N * held[c]);
         const auto* from = plain.data() + at + static_cast<Eigen::Index>(c) * n;
         takes[t].force_N[c].insert(takes[t].force_N[c].end(), from, from + n);
       }
@@ -140,7 +140,6 @@ private:
     for (std::size_t t = 0; t < plan_.takes.size(); ++t) n += 2 * samples(t);
     return n;
   }
-  [[nodiscard]] static std::array<double, 2> pluck_layout_static(const pluck_take& t) { return {t.strength_N * (1 - t.position), t.strength_N * t.position}; }
 
   planned_plucks plan_;
   pluck_layout layout_;

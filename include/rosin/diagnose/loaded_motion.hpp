@@ -17,8 +17,8 @@
 //
 #pragma once
 
+#include <rosin/condition/held_record.hpp>
 #include <rosin/diagnose/pluck_scene.hpp>
-#include <rosin/math/fft.hpp>
 #include <rosin/reconstruct/end_motion.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>
 
@@ -27,35 +27,6 @@
 namespace rosin {
 
 namespace detail {
-
-/// A record between held ends, in the frequency domain.
-class held_record {
-public:
-  held_record(std::size_t samples, std::size_t pad) : samples_{samples}, pad_{pad}, size_{fast_size(samples + 2 * pad)}, fft_(size_) {}
-
-  [[nodiscard]] std::size_t bins() const { return size_ / 2 + 1; }
-  [[nodiscard]] double frequency_Hz(std::size_t k, double rate_Hz) const { return static_cast<double>(k) * rate_Hz / static_cast<double>(size_); }
-  [[nodiscard]] std::vector<std::complex<double>> spectrum(std::span<const double> x) {
-    std::vector<double> wide(size_);
-    for (std::size_t i = 0; i < size_; ++i) wide[i] = x[std::min(samples_ - 1, i < pad_ ? 0 : i - pad_)];
-    for (std::size_t i = samples_ + pad_; i < size_; ++i) {  // back to where it begins, gently
-      const double u = static_cast<double>(i - samples_ - pad_) / static_cast<double>(size_ - samples_ - pad_);
-      wide[i] += (wide[0] - x.back()) * 0.5 * (1 - std::cos(std::numbers::pi * u));
-    }
-    std::vector<std::complex<double>> out(bins());
-    fft_.forward(wide.data(), out.data());
-    return out;
-  }
-  [[nodiscard]] std::vector<double> record(std::vector<std::complex<double>> spectrum) {
-    std::vector<double> wide(size_);
-    fft_.inverse(spectrum.data(), wide.data());
-    return {wide.begin() + static_cast<std::ptrdiff_t>(pad_), wide.begin() + static_cast<std::ptrdiff_t>(pad_ + samples_)};
-  }
-
-private:
-  std::size_t samples_, pad_, size_;
-  eigen_fft<double> fft_;
-};
 
 /// What the loads of one side add to this side's force, to the other side's, and to the velocities, at one frequency.
 struct load_echo {
@@ -126,9 +97,7 @@ inline void add_echoes(const std::vector<scatterer>& loads, const bow_point& at,
   std::array<std::vector<double>, 2> moved;
   for (std::size_t e = 0; e < 2; ++e) {
     if (scene.ends[e].modes.empty()) continue;
-    modal_termination end;
-    for (const yielding_mode& m : scene.ends[e].modes) end.modes.push_back({m.frequency_Hz, m.q, m.per_mass_per_s});
-    moved[e] = motion_of_end(end, force_N[e], limits, rate_Hz).times_impedance_N;
+    moved[e] = motion_of_end(modal_termination{scene.ends[e].modes}, force_N[e], limits, rate_Hz).times_impedance_N;
   }
   bow_motion<double> motion;
   if (moved[0].empty() && moved[1].empty()) {

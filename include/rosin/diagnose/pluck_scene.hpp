@@ -10,6 +10,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_model.hpp>
+#include <rosin/propagate/termination.hpp>
 
 #include <array>
 #include <complex>
@@ -32,25 +33,16 @@ struct scatterer {
   }
 };
 
-/// One mode of a termination: a damped mass on a spring.
-struct yielding_mode {
-  double frequency_Hz = 0, q = 1;
-  double per_mass_per_s = 0;  ///< Z / M: 0 is rigid
-};
-
 /// A termination that gives way: Z Y(s) = sum of modes + Z / R + Z / (M s).
 struct yielding_end {
-  std::vector<yielding_mode> modes;
+  std::vector<admittance_mode> modes;
   double conductance = 0;         ///< Z / R
   double per_free_mass_per_s = 0; ///< Z / M of an end that is nothing but a mass
 
   [[nodiscard]] bool rigid() const { return modes.empty() && conductance == 0 && per_free_mass_per_s == 0; }
   [[nodiscard]] std::complex<double> admittance(std::complex<double> s) const {
     std::complex<double> sum = conductance + per_free_mass_per_s / s;
-    for (const yielding_mode& m : modes) {
-      const double w = 2 * std::numbers::pi * m.frequency_Hz;
-      sum += m.per_mass_per_s * s / (s * s + s * w / m.q + w * w);
-    }
+    for (const admittance_mode& m : modes) sum += m(s);
     return sum;
   }
 };
@@ -62,10 +54,7 @@ struct sensor_response {
   double delay_s = 0;              ///< the channel comes late by this
 
   /// The pole of the resonance in the upper half plane (or one of two real ones).
-  [[nodiscard]] std::complex<double> pole() const {
-    const double w = 2 * std::numbers::pi * resonance_Hz;
-    return w * (-0.5 / q + std::sqrt(std::complex<double>(0.25 / (q * q) - 1)));
-  }
+  [[nodiscard]] std::complex<double> pole() const { return admittance_mode{resonance_Hz, q}.pole(); }
   [[nodiscard]] std::complex<double> operator()(std::complex<double> s) const {
     std::complex<double> h = std::exp(-s * delay_s);
     const double w = 2 * std::numbers::pi * resonance_Hz, corner = 2 * std::numbers::pi * corner_Hz;

@@ -53,6 +53,11 @@ struct scene_data {
   }
 };
 
+/// What a fit makes of string, ends, wire and sensors, as the first take shows them.
+[[nodiscard]] inline pluck_scene scene_of(const scene_data& data, const scene_fit& fit) {
+  return scene_plucks(data.layout, data.guess.ac_coupled_Hz, fit.effects).scene(fit.value, 0);
+}
+
 namespace detail {
 
 /// One score step for every effect that works on the recordings; returns the largest step in standard deviations.

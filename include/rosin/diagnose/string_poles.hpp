@@ -22,7 +22,7 @@ namespace detail {
 inline std::complex<double> characteristic(const pluck_scene& scene, std::complex<double> s, double strength) {
   std::complex<double> value = loop_determinant(scene, s, strength);
   for (const yielding_end& end : scene.ends)
-    for (const yielding_mode& m : end.modes) {
+    for (const admittance_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
       value *= (s * s + s * w / m.q + w * w) / (w * w);
     }
@@ -87,7 +87,7 @@ inline bool stayed(const std::vector<std::complex<double>>& roots, const std::ve
     roots.emplace_back(-std::numbers::pi * f * scene.string.loss.inverse_q(f), 2 * std::numbers::pi * f);
   }
   for (const yielding_end& end : scene.ends)
-    for (const yielding_mode& m : end.modes) {
+    for (const admittance_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
       roots.emplace_back(-w / (2 * m.q), w * std::sqrt(std::max(0.01, 1 - 0.25 / (m.q * m.q))));
     }

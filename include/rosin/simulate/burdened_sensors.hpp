@@ -10,9 +10,11 @@
 //
 #pragma once
 
-#include <rosin/simulate/modal_bank.hpp>
+#include <rosin/simulate/mode_step.hpp>
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 namespace rosin {
 
@@ -25,20 +27,10 @@ struct sensor_faults {
 namespace detail {
 
 inline void ring_along(std::vector<double>& x, double frequency_Hz, double q, double step_s) {
-  constexpr double pi = 3.14159265358979323846;
-  const double w = 2 * pi * frequency_Hz;
-  const string_mode mode{1, w, 1 / q, 1 / (w * w), 0};  // a spring of 1: displacement = the output
-  const auto p = mode.pole();
-  const auto b = (1.0 - std::complex<double>{0, 1} * p.real() / p.imag()) / mode.mass_kg;
-  const auto r = respond_over_step(p, step_s);
-  const double from_re = p.real() / (w * w), from_im = p.imag() / (w * w);
-  std::complex<double> free{0, x.empty() ? 0 : x.front() / from_im};
-  free -= x.empty() ? 0.0 : b * r.end * x.front();
-  for (double& sample : x) {
-    const auto now = free + b * r.end * sample;
-    free = r.decay * now + b * r.begin * sample;
-    sample = from_re * now.real() + from_im * now.imag();
-  }
+  const double w = 2 * 3.14159265358979323846 * frequency_Hz;
+  driven_mode sensor({1, w, 1 / q, 1 / (w * w), 0}, step_s);  // on a spring of 1 N/m: its displacement is what it says
+  if (!x.empty()) sensor.rest_at(x.front(), x.front());
+  for (double& sample : x) sample = sensor.advance(sample).displacement;
 }
 
 /// x(t - delay), |delay| below the record's length; the ends are held.

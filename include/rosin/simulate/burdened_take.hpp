@@ -29,7 +29,6 @@ struct burdened_steps {
 /// The wire's force on the string while it lets go: F(t) = F0 (1 + cos(pi t / d)) / 2 from the release on, or within one step of the simulation.
 struct burdened_pluck {
   double position = 0.3, force_N = 1, release_s = 0.004, release_duration_s = 0;
-  double width_m = 0;  ///< over which the wire pulls evenly
 };
 
 [[nodiscard]] inline double wire_force(const burdened_pluck& p, double t) noexcept {
@@ -39,25 +38,17 @@ struct burdened_pluck {
   return into < p.release_duration_s ? p.force_N * (1 + std::cos(pi * into / p.release_duration_s)) / 2 : 0;
 }
 
-/// A wire as wide as `width_m` is three points that share its force (Simpson's weights keep the mean and the variance of an even share).
 [[nodiscard]] inline burdened_steps step_pluck(const modal_rig& rig, const string_burden& burden, const burdened_pluck& pluck, double duration_s, double mode_limit_Hz,
                                                double step_s) {
-  std::vector<double> at{pluck.position}, share{1};
-  if (pluck.width_m > 0) {
-    const double half = pluck.width_m / rig.string.length_m / 2;
-    at = {pluck.position - half, pluck.position, pluck.position + half};
-    share = {1.0 / 6, 4.0 / 6, 1.0 / 6};
-  }
-  burdened_string string{rig, burden, at, mode_limit_Hz, step_s};
-  const Eigen::VectorXd shares = Eigen::Map<const Eigen::VectorXd>(share.data(), static_cast<Eigen::Index>(share.size()));
-  string.rest_under(pluck.force_N * shares);
+  burdened_string string{rig, burden, {pluck.position}, mode_limit_Hz, step_s};
+  string.rest_under(Eigen::VectorXd::Constant(1, pluck.force_N));
   burdened_steps out{.step_s = step_s};
   const auto steps = static_cast<std::size_t>(duration_s / step_s);
   out.reserve(steps);
   for (std::size_t n = 0; n < steps; ++n) {
     const double force = wire_force(pluck, static_cast<double>(n) * step_s);
     (void)string.free_velocity();
-    const auto now = string.advance(force * shares);
+    const auto now = string.advance(Eigen::VectorXd::Constant(1, force));
     for (std::size_t e = 0; e < 2; ++e) out.end_N[e].push_back(now.end_N[static_cast<Eigen::Index>(e)]);
   }
   return out;
@@ -65,35 +56,6 @@ struct burdened_pluck {
 
 /// The rod's or bow's own give: a mass on a spring along its motion. None where the mass is 0.
 using yielding_rod = yielding_support;
-
-namespace detail {
-
-/// That oscillator under a force that runs straight within a step.
-class rod_mode {
-public:
-  rod_mode(const yielding_rod& rod, double step_s) : present_{rod.mass_kg > 0} {
-    if (!present_) return;
-    constexpr double pi = 3.14159265358979323846;
-    const string_mode mode{1, 2 * pi * rod.frequency_Hz, 1 / rod.quality, rod.mass_kg, 0};
-    const auto p = mode.pole();
-    const auto b = (1.0 - std::complex<double>{0, 1} * p.real() / p.imag()) / rod.mass_kg;
-    const auto r = respond_over_step(p, step_s);
-    turn_ = r.decay, begin_ = b * r.begin, end_ = b * r.end;
-  }
-  [[nodiscard]] double mobility() const noexcept { return end_.real(); }
-  [[nodiscard]] double free() const noexcept { return free_.real(); }
-  double advance(double force_N) noexcept {
-    const auto now = free_ + end_ * force_N;
-    free_ = turn_ * now + begin_ * force_N;
-    return now.real();
-  }
-
-private:
-  bool present_;
-  std::complex<double> turn_{}, begin_{}, end_{}, free_{};
-};
-
-}  // namespace detail
 
 /// A stroke: `width_m` 0 is one contact, otherwise two, width_m apart, that share the normal force.
 template <FrictionLaw Law, class Motion>
@@ -103,7 +65,8 @@ template <FrictionLaw Law, class Motion>
   const std::vector<double> at = width_m > 0 ? std::vector<double>{position - half, position + half} : std::vector<double>{position};
   const auto contacts = static_cast<Eigen::Index>(at.size());
   burdened_string string{rig, burden, at, mode_limit_Hz, step_s};
-  detail::rod_mode gives{rod, step_s};
+  driven_mode gives;
+  if (rod.mass_kg > 0) gives = driven_mode({1, 2 * 3.14159265358979323846 * rod.frequency_Hz, 1 / rod.quality, rod.mass_kg, 0}, step_s);
   law.reset();
   std::vector<Law> laws(at.size(), law);
   burdened_steps out{.step_s = step_s};
@@ -137,7 +100,7 @@ template <FrictionLaw Law, class Motion>
       force[i] = answer.force_N, slipping = slipping || answer.slipping;
     }
     const auto now = string.advance(force);
-    const double yielded = gives.advance(force.sum());
+    const double yielded = gives.advance(force.sum()).velocity;
     for (std::size_t e = 0; e < 2; ++e) out.end_N[e].push_back(now.end_N[static_cast<Eigen::Index>(e)]);
     out.force_N.push_back(force.sum());
     out.centre_m_s.push_back((now.surface_m_s - now.twist_m_s).mean());

@@ -22,28 +22,9 @@
 
 #include <Eigen/Core>
 
-#include <rosin/simulate/modal_string.hpp>
+#include <rosin/simulate/mode_step.hpp>
 
 namespace rosin {
-
-/// phi_a and phi_b of the header's equation: responses to the force at a step's begin and end.
-struct step_response {
-  std::complex<double> decay, begin, end;
-};
-
-[[nodiscard]] inline step_response respond_over_step(std::complex<double> pole, double step_s) {
-  const auto x = pole * step_s;
-  const auto decay = std::exp(x);
-  std::complex<double> first = 0, second = 0;  // (e^x - 1) / x, (e^x - 1 - x) / x^2
-  if (std::abs(x) < 0.3) {
-    for (int k = 16; k >= 1; --k) second = (1.0 + second * x) / (k + 1.0);
-    first = 1.0 + second * x;
-  } else {
-    first = (decay - 1.0) / x;
-    second = (first - 1.0) / x;
-  }
-  return {decay, step_s * (first - second), step_s * second};
-}
 
 /// What acts at the end of a step, besides the force that is still to be found.
 template <int Ports>
@@ -153,9 +134,8 @@ private:
 
   void set(lane& l, Eigen::Index i, const string_mode& m, damping_convention damping, const values& positions, double h) {
     const auto p = m.pole();
-    const auto b = (1.0 - std::complex<double>{0, 1} * p.real() / p.imag()) / m.mass_kg;
-    const auto r = respond_over_step(p, h);
-    const auto push = b * (r.decay * r.end + r.begin);
+    const auto r = respond_over_step(m, h);
+    const auto push = r.decay * r.end + r.begin;
     const double w2 = m.omega_rad_s * m.omega_rad_s, in_stress = damping == damping_convention::kelvin_voigt ? 1 : 0;
     const std::complex<double> end{m.end_stiffness_N_m * (p.real() / w2 + in_stress * m.inverse_quality / m.omega_rad_s),
                                    m.end_stiffness_N_m * p.imag() / w2};
@@ -163,7 +143,7 @@ private:
     l.push_re[i] = push.real(), l.push_im[i] = push.imag();
     l.end_re[i] = end.real(), l.end_im[i] = end.imag();
     for (std::size_t k = 0; k < ports; ++k) l.shape[k][i] = m.shape(positions[k]);
-    add_gains(l, i, m, b * r.end, end);
+    add_gains(l, i, m, r.end, end);
   }
 
   void add_gains(const lane& l, Eigen::Index i, const string_mode& m, std::complex<double> at_once, std::complex<double> end) {

@@ -101,9 +101,8 @@ private:
 
   void set_mode(Eigen::Index i, const string_mode& m, bool in_stress) {
     const auto p = m.pole();
-    const auto b = (1.0 - std::complex<double>{0, 1} * p.real() / p.imag()) / m.mass_kg;
-    const auto r = respond_over_step(p, step_);
-    const auto push = b * (r.decay * r.end + r.begin), once = b * r.end;
+    const auto r = respond_over_step(m, step_);
+    const auto push = r.decay * r.end + r.begin, once = r.end;
     mass[i] = m.mass_kg, omega[i] = m.omega_rad_s, number[i] = m.number;
     k_[i] = i < transverse_ ? m.number * pi / length_ : 0;
     turn_re_[i] = r.decay.real(), turn_im_[i] = r.decay.imag();

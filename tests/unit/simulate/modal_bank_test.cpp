@@ -40,22 +40,6 @@ struct integrated {
 
 }  // namespace
 
-TEST_CASE("responses over a step, small and large, against their integrals") {
-  for (const complex p : {complex{-1e-4, 1e-3}, complex{-0.02, 0.29}, complex{-0.02, 0.31}, complex{-0.5, 4.0}}) {
-    const auto r = rosin::respond_over_step(p / 1e-6, 1e-6);
-    complex begin = 0, end = 0;
-    const int parts = 20000;
-    for (int i = 0; i < parts; ++i) {
-      const double u = (i + 0.5) / parts;
-      begin += std::exp(p * (1 - u)) * (1 - u) / static_cast<double>(parts);
-      end += std::exp(p * (1 - u)) * u / static_cast<double>(parts);
-    }
-    CHECK(std::abs(r.begin / 1e-6 - begin) < 2e-8);
-    CHECK(std::abs(r.end / 1e-6 - end) < 2e-8);
-    CHECK(std::abs(r.decay - std::exp(p)) < 1e-14);
-  }
-}
-
 TEST_CASE("steps are exact for a force that runs straight between them") {
   for (const bool in_stress : {false, true}) {
     const double position = 0.3, h = 2e-5;
