@@ -117,6 +117,7 @@
 #include <rosin/friction/friction_curves.hpp>
 #include <rosin/friction/friction_law.hpp>
 #include <rosin/friction/slip_phases.hpp>
+#include <rosin/friction/slip_loops.hpp>
 #include <rosin/friction/slip_samples.hpp>
 #include <rosin/friction/slip_watch.hpp>
 #include <rosin/friction/thermal_plastic.hpp>
@@ -125,6 +126,7 @@
 #include <rosin/friction/yield_curve_design.hpp>
 
 #include <rosin/simulate/burdened_sensors.hpp>
+#include <rosin/simulate/burdened_signals.hpp>
 #include <rosin/simulate/burdened_string.hpp>
 #include <rosin/simulate/burdened_take.hpp>
 #include <rosin/simulate/converter.hpp>
@@ -137,6 +139,7 @@
 #include <rosin/simulate/modal_string.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 #include <rosin/simulate/modal_take.hpp>
+#include <rosin/simulate/moving_support.hpp>
 #include <rosin/simulate/port_bank.hpp>
 #include <rosin/simulate/profiled_rod.hpp>
 #include <rosin/simulate/random_rig.hpp>
