@@ -68,7 +68,11 @@ TEST_CASE("slip loops: an ellipse has the area pi a b, counter-clockwise where t
         CHECK(s.dissipated_J == doctest::Approx(e.mean_N * s.distance_m()).epsilon(1e-6));
         CHECK(s.duration_s() == doctest::Approx(40 / rate_Hz).epsilon(0.06));
       }
-      CHECK(rosin::judge_loops(loops).sense == (early > 0 ? rosin::loop_sense::counter_clockwise : rosin::loop_sense::clockwise));
+      const auto verdict = rosin::judge_loops(loops, 30 / rate_Hz);
+      CHECK(verdict.loops == 20);
+      CHECK(verdict.split_N == doctest::Approx(loops[7].split_N()));
+      CHECK(verdict.sense == (early > 0 ? rosin::loop_sense::counter_clockwise : rosin::loop_sense::clockwise));
+      CHECK(rosin::judge_loops(loops, 50 / rate_Hz).loops == 0);
     }
 }
 
