@@ -6,18 +6,20 @@
 //
 //     y(x, t) = sum q_n sin(k_n x) + (1 - x/L) u_1 + (x/L) u_2,
 //     m (q_n'' + (w_n/Q_n) q_n' + w_n^2 q_n) = sum f_p sin(k_n x_p) - a_n1 u_1'' - a_n2 u_2'',   a_n = mu L / (n pi) (+-1),
-//     M (u'' + (w_s/Q_s) u' + w_s^2 u) = F_end = sum (T k_n + B k_n^3) q_n - (T/L) (u - u_other).
+//     u = sum u_k (moving_support.hpp),  F_end = sum (T k_n + B k_n^3) q_n - (T/L) (u - u_other).
 //
-// Unknown in every step besides the contacts' forces are the loads' f and g = -u'' of the supports; whatever is linear in
+// Unknown in every step besides the contacts' forces are the loads' f and g = -u'' of the ends; whatever is linear in
 // them goes into one small matrix that is inverted beforehand:
 //
-//     load:     f + alpha v(f, g) = -beta,    alpha = 3 M / 2h + R + K h / 2,    v' = (3 v - 4 v_0 + v_-1) / 2h
-//     support:  (M + c h/2 + (K + T/L) h^2/6) g + F_end(f, g) = c (u_0' - h g_0/2) + (K + T/L) (u_0 + h u_0' - h^2 g_0/3).
+//     load:   f + alpha v(f, g) = -beta,    alpha = 3 M / 2h + R + K h / 2,    v' = (3 v - 4 v_0 + v_-1) / 2h
+//     end:    D g + F_end(f, g) = r         (moving_support.hpp).
 //
 // Nothing here is shared with the closed forms that a diagnosis fits.
 //
 #pragma once
 
+#include <rosin/propagate/termination.hpp>
+#include <rosin/simulate/moving_support.hpp>
 #include <rosin/simulate/port_bank.hpp>
 
 #include <utility>
@@ -30,15 +32,11 @@ struct point_load {
   double mass_kg = 0, resistance_Ns_m = 0, stiffness_N_m = 0;
 };
 
-/// A support under an end of the string; none where the mass is 0.
-struct yielding_support {
-  double mass_kg = 0, frequency_Hz = 0, quality = 1;
-};
-
 /// All that the string itself carries.
 struct string_burden {
   std::vector<point_load> loads{};
   std::array<yielding_support, 2> supports{};  ///< near, far
+  std::array<modal_termination, 2> ends{};     ///< the same as terminations are declared: any number of modes, masses against the string's Z
   double axial_stiffness_N = 0;                ///< E A; 0: the tension is steady
 };
 
@@ -49,8 +47,7 @@ public:
       : stretch_{rig.string.tension_N / rig.string.length_m}, step_{step_s}, contacts_{static_cast<int>(contacts.size())},
         bank_{rig, burden.axial_stiffness_N, mode_limit_Hz, step_s}, positions_{contacts} {
     for (const auto& load : burden.loads) loads_.push_back({load}), positions_.push_back(load.position);
-    for (int e = 0; e < 2; ++e)
-      if (const auto& s = burden.supports[static_cast<std::size_t>(e)]; s.mass_kg > 0) ends_.push_back({s, e});
+    for (int e = 0; e < 2; ++e) add_end(burden, e, rig.string.impedance_Ns_m());
     set_ports(rig);
     set_system();
     read();
@@ -77,7 +74,7 @@ public:
     all << force, x.head(l), Eigen::VectorXd::Zero(n - l);
     const Eigen::VectorXd y = deflection(force, x);
     for (int i = 0; i < l; ++i) loads_[static_cast<std::size_t>(i)].y = y[contacts_ + i];
-    for (int i = l; i < n; ++i) ends_[static_cast<std::size_t>(i - l)].u = x[i];
+    for (int i = l; i < n; ++i) ends_[static_cast<std::size_t>(i - l)].rest_at(x[i]);
     bank_.rest_under(all);
     last_ = all.head(points());
     read();
@@ -92,9 +89,13 @@ public:
   /// Their response to forces at the contacts in the same step, m/(N s).
   [[nodiscard]] const Eigen::MatrixXd& mobility() const noexcept { return contact_mobility_; }
 
+  /// What the modes left out add to the motion of the contacts, times the rate of the force there: centre, twist; m/N.
+  [[nodiscard]] Eigen::VectorXd centre_left_out_m_N() const { return (rest_ - rest_twist_).head(contacts_); }
+  [[nodiscard]] Eigen::VectorXd twist_left_out_m_N() const { return rest_twist_.head(contacts_); }
+
   struct reading {
     Eigen::Vector2d end_N;                 ///< forces on near and far end
-    Eigen::VectorXd surface_m_s, twist_m_s;  ///< at the contacts; the centre moves with the difference
+    Eigen::VectorXd surface_m_s, twist_m_s;  ///< at the contacts, of the modes alone; the centre moves with the difference
   };
   /// After free_velocity(): ends the step with these forces at the contacts and begins the next.
   reading advance(const Eigen::VectorXd& force) {
@@ -103,9 +104,10 @@ public:
     if (unknowns() > 0) all.tail(unknowns()) = answer_ - solve_ * (drive_ * force);
     const Eigen::VectorXd v = free_ + mobility_ * all;
     move(v, all);
-    reading out{free_end_ + end_gain_ * all, v.head(contacts_), Eigen::VectorXd(contacts_)};
+    const Eigen::VectorXd rate = (force - last_.head(contacts_)) / step_;
+    reading out{free_end_ + end_gain_ * all, v.head(contacts_) - rest_.head(contacts_).cwiseProduct(rate), Eigen::VectorXd(contacts_)};
     Eigen::Vector2d u = Eigen::Vector2d::Zero();
-    for (const auto& m : ends_) u[m.side] = m.u;
+    for (const auto& m : ends_) u[m.side] = m.sum(&moving_mode::u);
     out.end_N += stretch_ * Eigen::Vector2d{u[1] - u[0], u[0] - u[1]};
     for (int i = 0; i < contacts_; ++i) out.twist_m_s[i] = bank_.twist(i, all);
     bank_.advance(all);
@@ -119,22 +121,21 @@ private:
     point_load load;
     double v = 0, v_before = 0, y = 0;
   };
-  struct moving_end {
-    yielding_support support;
-    int side = 0;
-    double u = 0, v = 0, g = 0;  ///< displacement, velocity, minus acceleration
-    [[nodiscard]] double omega() const noexcept { return 2 * 3.14159265358979323846 * support.frequency_Hz; }
-    [[nodiscard]] double stiffness() const noexcept { return support.mass_kg * omega() * omega(); }
-    [[nodiscard]] double damping() const noexcept { return support.mass_kg * omega() / support.quality; }
-    [[nodiscard]] double ahead(double h) const noexcept { return u + h * v - h * h * g / 3; }
-  };
+  void add_end(const string_burden& burden, int side, double impedance_Ns_m) {
+    const auto e = static_cast<std::size_t>(side);
+    moving_support end{side, {}};
+    if (burden.supports[e].mass_kg > 0) end.modes.push_back({burden.supports[e]});
+    for (const auto& m : burden.ends[e].modes)
+      if (m.per_mass_per_s > 0) end.modes.push_back({{impedance_Ns_m / m.per_mass_per_s, m.frequency_Hz, m.q}});
+    if (!end.modes.empty()) ends_.push_back(std::move(end));
+  }
 
   [[nodiscard]] int points() const noexcept { return static_cast<int>(positions_.size()); }
   [[nodiscard]] int load_count() const noexcept { return static_cast<int>(loads_.size()); }
   [[nodiscard]] int unknowns() const noexcept { return load_count() + static_cast<int>(ends_.size()); }
-  [[nodiscard]] const moving_end& end(int i) const noexcept { return ends_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const moving_support& end(int i) const noexcept { return ends_[static_cast<std::size_t>(i)]; }
   /// How far point i rises for 1 m at the end.
-  [[nodiscard]] double lift(int i, const moving_end& e) const noexcept {
+  [[nodiscard]] double lift(int i, const moving_support& e) const noexcept {
     const double x = positions_[static_cast<std::size_t>(i)];
     return e.side == 0 ? 1 - x : x;
   }
@@ -160,13 +161,14 @@ private:
   void set_left_out(const modal_rig& rig) {
     const int p = points(), all = contacts_ + unknowns();
     const double string_mass = rig.string.linear_density_kg_m() * rig.string.length_m;
-    rest_ = Eigen::VectorXd::Zero(p), rest_end_ = -bank_.share;
+    rest_ = Eigen::VectorXd::Zero(p), rest_twist_ = rest_, rest_end_ = -bank_.share;
     for (int j = 0; j < p; ++j) {
       const double x = positions_[static_cast<std::size_t>(j)];
       rest_end_.col(j) += Eigen::Vector2d{1 - x, x};
       rest_[j] = static_compliance_m_N(rig.string, x) - bank_.compliance(j, j);
       if (j >= contacts_ || !rig.torsion.present()) continue;
-      rest_[j] += x * (1 - x) / (rig.torsion.impedance_ratio * rig.torsion.speed_ratio * stretch_) - bank_.twist_compliance(j, j);
+      rest_twist_[j] = x * (1 - x) / (rig.torsion.impedance_ratio * rig.torsion.speed_ratio * stretch_) - bank_.twist_compliance(j, j);
+      rest_[j] += rest_twist_[j];
     }
     for (int j = p; j < all; ++j) {
       const int side = end(j - p).side;
@@ -190,7 +192,7 @@ private:
     for (int i = l; i < n; ++i) {
       const auto& e = end(i - l);
       a.row(i) = end_gain_.block(e.side, c, 1, n);
-      a(i, i) += e.support.mass_kg + e.damping() * step_ / 2 + (e.stiffness() + stretch_) * step_ * step_ / 6;
+      a(i, i) += e.inertia_and_force(step_)[0] + stretch_ * step_ * step_ / 6;
       if (n - l == 2) a(i, 2 * l + 1 - i) -= stretch_ * step_ * step_ / 6;
       drive_.row(i) = end_gain_.block(e.side, 0, 1, c);
     }
@@ -207,7 +209,7 @@ private:
     }
     for (int i = l; i < n; ++i) {
       const auto& e = end(i - l);
-      b[i] = e.damping() * (e.v - step_ * e.g / 2) + (e.stiffness() + stretch_) * e.ahead(step_) - free_end_[e.side];
+      b[i] = e.inertia_and_force(step_)[1] + stretch_ * e.ahead(step_) - free_end_[e.side];
       if (n - l == 2) b[i] -= stretch_ * end(1 - (i - l)).ahead(step_);
     }
     return b;
@@ -221,11 +223,8 @@ private:
       m.v_before = std::exchange(m.v, now);
     }
     for (std::size_t i = 0; i < ends_.size(); ++i) {
-      auto& m = ends_[i];
-      const double g = force[points() + static_cast<Eigen::Index>(i)];
-      m.u += step_ * m.v - step_ * step_ * (m.g / 3 + g / 6);
-      m.v -= step_ * (m.g + g) / 2;
-      m.g = g;
+      const auto [inertia, held] = ends_[i].inertia_and_force(step_);
+      ends_[i].move(step_, held - inertia * force[points() + static_cast<Eigen::Index>(i)]);
     }
   }
 
@@ -234,7 +233,7 @@ private:
     bank_.read_free(free_, free_end_);
     for (int i = 0; i < points(); ++i) {
       free_[i] -= rest_[i] / step_ * last_[i];
-      for (const auto& e : ends_) free_[i] += lift(i, e) * (e.v - step_ * e.g / 2);
+      for (const auto& e : ends_) free_[i] += lift(i, e) * (e.sum(&moving_mode::v) - step_ / 2 * e.sum(&moving_mode::g));
     }
   }
 
@@ -258,9 +257,9 @@ private:
   port_bank bank_;
   std::vector<double> positions_;
   std::vector<moving_load> loads_;
-  std::vector<moving_end> ends_;
+  std::vector<moving_support> ends_;
   Eigen::MatrixXd mobility_, end_gain_, rest_end_, solve_, across_, drive_, contact_mobility_;
-  Eigen::VectorXd rest_, free_, last_, answer_;
+  Eigen::VectorXd rest_, rest_twist_, free_, last_, answer_;
   Eigen::Vector2d free_end_ = Eigen::Vector2d::Zero();
 };
 

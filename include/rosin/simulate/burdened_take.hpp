@@ -18,15 +18,17 @@ struct burdened_steps {
   double step_s = 0;
   std::array<std::vector<double>, 2> end_N{};
   std::vector<double> force_N{}, centre_m_s{}, twist_m_s{}, rod_m_s{};
-  std::size_t slips = 0;
+  double centre_left_out_m_N = 0, twist_left_out_m_N = 0;  ///< the velocities lack these times the rate of the force
+  std::vector<double> temperature_K{};  ///< rise, where the law has one
+  std::size_t slips = 0, unconverged = 0;
   double slipping = 0;  ///< share of the second half's steps
 
   void reserve(std::size_t size) {
-    for (auto* s : {&end_N[0], &end_N[1], &force_N, &centre_m_s, &twist_m_s, &rod_m_s}) s->reserve(size);
+    for (auto* s : {&end_N[0], &end_N[1], &force_N, &centre_m_s, &twist_m_s, &rod_m_s, &temperature_K}) s->reserve(size);
   }
 };
 
-/// The wire's force on the string while it lets go: F(t) = F0 (1 + cos(pi t / d)) / 2 from the release on, or within one step of the simulation.
+/// The wire's force on the string while it lets go: F(t) = F0 (1 + cos(pi t / d)) / 2 from the release on, or at once.
 struct burdened_pluck {
   double position = 0.3, force_N = 1, release_s = 0.004, release_duration_s = 0;
 };
@@ -38,18 +40,25 @@ struct burdened_pluck {
   return into < p.release_duration_s ? p.force_N * (1 + std::cos(pi * into / p.release_duration_s)) / 2 : 0;
 }
 
+/// The same as steps see it that are straight lines: at once means within the step that has the release in its middle.
+[[nodiscard]] inline double wire_force(const burdened_pluck& p, double t, double step_s) noexcept {
+  return p.release_duration_s > 0 ? wire_force(p, t) : p.force_N * std::clamp((p.release_s - t) / step_s + 0.5, 0.0, 1.0);
+}
+
 [[nodiscard]] inline burdened_steps step_pluck(const modal_rig& rig, const string_burden& burden, const burdened_pluck& pluck, double duration_s, double mode_limit_Hz,
                                                double step_s) {
   burdened_string string{rig, burden, {pluck.position}, mode_limit_Hz, step_s};
   string.rest_under(Eigen::VectorXd::Constant(1, pluck.force_N));
-  burdened_steps out{.step_s = step_s};
+  burdened_steps out{.step_s = step_s, .centre_left_out_m_N = string.centre_left_out_m_N()[0]};
   const auto steps = static_cast<std::size_t>(duration_s / step_s);
   out.reserve(steps);
   for (std::size_t n = 0; n < steps; ++n) {
-    const double force = wire_force(pluck, static_cast<double>(n) * step_s);
+    const double force = wire_force(pluck, static_cast<double>(n) * step_s, step_s);
     (void)string.free_velocity();
     const auto now = string.advance(Eigen::VectorXd::Constant(1, force));
     for (std::size_t e = 0; e < 2; ++e) out.end_N[e].push_back(now.end_N[static_cast<Eigen::Index>(e)]);
+    out.force_N.push_back(force);
+    out.centre_m_s.push_back(now.surface_m_s[0] - now.twist_m_s[0]);
   }
   return out;
 }
@@ -69,7 +78,9 @@ template <FrictionLaw Law, class Motion>
   if (rod.mass_kg > 0) gives = driven_mode({1, 2 * 3.14159265358979323846 * rod.frequency_Hz, 1 / rod.quality, rod.mass_kg, 0}, step_s);
   law.reset();
   std::vector<Law> laws(at.size(), law);
-  burdened_steps out{.step_s = step_s};
+  burdened_steps out{.step_s = step_s,  // the contacts share the force alike
+                     .centre_left_out_m_N = string.centre_left_out_m_N().mean() / static_cast<double>(contacts),
+                     .twist_left_out_m_N = string.twist_left_out_m_N().mean() / static_cast<double>(contacts)};
   const auto steps = static_cast<std::size_t>(duration_s / step_s);
   out.reserve(steps);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(contacts);
@@ -85,7 +96,8 @@ template <FrictionLaw Law, class Motion>
         if (j != i) v += (mobility(i, j) + gives.mobility()) * force[j];
       return l(load_line<double>{v, mobility(i, i) + gives.mobility(), state.velocity_m_s, state.normal_force_N / static_cast<double>(contacts), step_s});
     };
-    bool slipping = false;
+    bool slipping = false, solved = true;
+    double warmest = 0;
     if (contacts > 1)
       for (int round = 0; round < 40; ++round) {
         const Eigen::VectorXd old = force;
@@ -98,7 +110,10 @@ template <FrictionLaw Law, class Motion>
     for (Eigen::Index i = 0; i < contacts; ++i) {
       const auto answer = solve(laws[static_cast<std::size_t>(i)], i);
       force[i] = answer.force_N, slipping = slipping || answer.slipping;
+      warmest = std::max(warmest, answer.temperature_rise_K), solved = solved && answer.converged;
     }
+    out.temperature_K.push_back(warmest);
+    out.unconverged += solved ? 0 : 1;
     const auto now = string.advance(force);
     const double yielded = gives.advance(force.sum()).velocity;
     for (std::size_t e = 0; e < 2; ++e) out.end_N[e].push_back(now.end_N[static_cast<Eigen::Index>(e)]);

@@ -52,13 +52,15 @@ TEST_CASE("at rest the ends carry the wire's force, whatever hangs on the string
   CHECK(first.end_N.sum() > 0.5);
 }
 
-TEST_CASE("partials of a string with a bead, a finger and a support that yields stand where its closed form has them") {
+TEST_CASE("partials of a string with a bead, a finger, a support that yields and a bridge of two modes stand where its closed form has them") {
   const double z = rig.string.impedance_Ns_m();
   rosin::string_burden burden{.loads = {{.position = 0.41, .mass_kg = 5e-6}, {.position = 0.7, .resistance_Ns_m = 4e-4}}, .supports = {{{}, {0.003, 2100, 12}}}};
+  burden.ends[0].modes = {{900, 10, z / 0.02}, {3300, 9, z / 0.005}};
   rosin::pluck_scene scene;
   scene.string = {rig.string.fundamental_Hz, rig.string.inharmonicity(), {1000, 0, 0}, 0};
   scene.scatterers = {{.position = 0.41, .mass_s = 5e-6 / z}, {.position = 0.7, .resistance = 4e-4 / z}};
   scene.ends[1].modes = {{2100, 12, z / 0.003}};
+  scene.ends[0].modes = burden.ends[0].modes;
   const auto poles = rosin::string_poles(scene, 8000, 20);
   const auto x = decay(burden);
   for (std::size_t i = 0; i < 10; ++i) {
