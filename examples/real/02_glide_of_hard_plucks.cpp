@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+//
+// Hidden physics: tension modulation. The starting model is a string whose tension does not know how wide it swings: every
+// partial keeps its pitch. A real string is stretched by its own motion, so all partials are sharp together, in proportion
+// to the energy that is left:
+//
+//     pitch(t) = base + K P(t),     P: power of the pickup's partials, t: since the pluck
+//
+// K, one number for a string, is fitted to the soft plucks alone. The hard plucks are then foretold: of them only the base,
+// from 2.5 s on, is used, because no peg stands still between takes.
+//
+//     02_glide_of_hard_plucks NOMINAL_HZ FIGURE.svg SOFT.flac... -- HARD.flac...
+//
+#include "figure.hpp"
+
+#include <rosin/calibrate/pickup_fit.hpp>
+
+#include <array>
+#include <complex>
+
+namespace {
+
+constexpr int first_partial = 2, last_partial = 6;  // below, the pickup hears too little; above, they die too soon
+constexpr double hop_s = 0.05, late_s = 2.5, heard_dB = 25;
+
+struct moment {
+  double time_s, power, cents, weight;
+  std::size_t partial;
+};
+
+/// Pitch of each partial that is loud enough, against n times the nominal pitch, every 50 ms.
+std::vector<moment> pitch_track(const std::string& file, double nominal_Hz) {
+  const auto heard = real::read_channel(file);
+  const auto fit = rosin::fit_pickup(heard.samples, heard.rate_Hz, nominal_Hz, {.partials_at_most = 16});
+  if (!fit) std::printf("%s: %s\n", file.c_str(), fit.error().c_str()), std::exit(1);
+  const double begin = rosin::detail::sound_begins_s(heard.samples, heard.rate_Hz);
+  const rosin::baseband_bank bank{heard.samples, heard.rate_Hz, 0.45 * nominal_Hz};
+  std::vector<rosin::baseband_record> band;
+  for (int n = 1; n <= 12; ++n) band.push_back(bank.around(rosin::partial_frequency(fit->fundamental_Hz, fit->inharmonicity, n)));
+  std::vector<moment> track;
+  for (double t = 0.1; t + hop_s < static_cast<double>(heard.samples.size()) / heard.rate_Hz - begin - 0.3; t += hop_s) {
+    std::array<double, 12> power{}, pitch{};
+    double all = 0, loudest = 0;
+    for (std::size_t i = 0; i < band.size(); ++i) {
+      const auto& z = band[i].samples;
+      const auto a = static_cast<std::size_t>((begin + t - hop_s) * band[i].rate_Hz), b = static_cast<std::size_t>((begin + t + hop_s) * band[i].rate_Hz);
+      std::complex<double> turn = 0;
+      for (std::size_t j = a; j < b; ++j) turn += z[j + 1] * std::conj(z[j]), power[i] += std::norm(z[j]) / static_cast<double>(b - a);
+      pitch[i] = band[i].centre_Hz + std::arg(turn) * band[i].rate_Hz / rosin::detail::full_turn;
+      all += power[i];
+      loudest = std::max(loudest, power[i]);
+    }
+    for (std::size_t i = first_partial - 1; i < last_partial; ++i)
+      if (power[i] > loudest * std::pow(10, -heard_dB / 10))
+        track.push_back({t, all, 1200 * std::log2(pitch[i] / nominal_Hz / static_cast<double>(i + 1)), std::sqrt(power[i] / loudest), i});
+  }
+  return track;
+}
+
+/// Takes the base out of each partial: its mean over `counted`, of pitch and (for the regression) of power.
+struct centred {
+  double slope_up = 0, slope_down = 0;  ///< sums of least squares for K
+  std::array<double, last_partial> base_cents{}, base_power{};
+};
+
+template <class Counted>
+centred centre(const std::vector<moment>& track, Counted counted) {
+  centred c;
+  std::array<double, last_partial> weight{};
+  for (const moment& m : track)
+    if (counted(m)) c.base_cents[m.partial] += m.weight * m.cents, c.base_power[m.partial] += m.weight * m.power, weight[m.partial] += m.weight;
+  for (std::size_t i = 0; i < weight.size(); ++i) c.base_cents[i] /= weight[i], c.base_power[i] /= weight[i];  // NaN: never heard there
+  for (const moment& m : track)
+    if (counted(m)) {
+      const double dp = m.power - c.base_power[m.partial];
+      c.slope_up += m.weight * dp * (m.cents - c.base_cents[m.partial]);
+      c.slope_down += m.weight * dp * dp;
+    }
+  return c;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const std::vector<std::string> all{words, words + count};
+  const auto divider = std::find(all.begin(), all.end(), "--");
+  if (count < 6 || divider == all.end()) return std::printf("usage: %s NOMINAL_HZ FIGURE.svg SOFT.flac... -- HARD.flac...\n", words[0]), 2;
+  const double nominal_Hz = std::atof(words[1]);
+  const auto whole = [](const moment&) { return true; };
+  const auto late = [](const moment& m) { return m.time_s >= late_s; };
+
+  double up = 0, down = 0;
+  for (auto file = all.begin() + 3; file != divider; ++file) {
+    const centred c = centre(pitch_track(*file, nominal_Hz), whole);
+    std::printf("soft %-36s K = %6.0f cents per unit of power\n", file->c_str(), c.slope_up / c.slope_down);
+    up += c.slope_up, down += c.slope_down;
+  }
+  const double K = up / down;
+  std::printf("K of all soft plucks: %.0f\n", K);
+
+  std::vector<real::panel> panels;
+  for (auto file = divider + 1; file != all.end(); ++file) {
+    const auto track = pitch_track(*file, nominal_Hz);
+    const centred base = centre(track, late), own = centre(track, whole);
+    const std::size_t slash = file->rfind('/') == std::string::npos ? 0 : file->rfind('/') + 1;
+    real::panel shown{file->substr(slash), "time, s", "pitch above its late value, cents", {}};
+    shown.all = {{"measured, partials 2 to 6", "#8fc1e3", {}, {}, false}, {"foretold from the soft plucks", "#8c1d40", {}, {}, true}};
+    double before = 0, after = 0, weight = 0;
+    for (const moment& m : track) {
+      const double glide = m.cents - base.base_cents[m.partial], foretold = K * (m.power - base.base_power[m.partial]);
+      if (!std::isfinite(glide)) continue;
+      shown.all[0].x.push_back(m.time_s), shown.all[0].y.push_back(glide);
+      if (shown.all[1].x.empty() || shown.all[1].x.back() < m.time_s) shown.all[1].x.push_back(m.time_s), shown.all[1].y.push_back(foretold);
+      if (late(m)) continue;
+      before += m.weight * glide * glide;
+      after += m.weight * std::pow(glide - foretold, 2);
+      weight += m.weight;
+    }
+    std::printf("hard %-36s residual before 2.5 s: %5.2f cents without, %5.2f with; its own K = %6.0f\n", file->c_str(), std::sqrt(before / weight),
+                std::sqrt(after / weight), own.slope_up / own.slope_down);
+    panels.push_back(std::move(shown));
+  }
+  panels.resize(std::min<std::size_t>(panels.size(), 2));
+  return real::write_figure(words[2], panels) ? 0 : 1;
+}
