@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "reconstruct_report.hpp"
+#include "reconstruct_slips.hpp"
 
 #include <rosin/report/csv.hpp>
 
@@ -16,7 +17,7 @@ namespace tool {
 namespace {
 
 struct options {
-  std::string rig, take, calibration, model, report, json_file;
+  std::string rig, take, calibration, model, report, json_file, slips;
   table_output output;
   take_options how;
   bool no_fine_tune = false, strict = false;
@@ -26,7 +27,7 @@ struct options {
 std::optional<rosin::failure> cannot_deliver(const options& given) {
   if (!given.report.empty())
     if (auto why = cannot_draw()) return why;
-  for (const auto* file : {&given.report, &given.json_file})
+  for (const auto* file : {&given.report, &given.json_file, &given.slips})
     if (!file->empty())
       if (auto why = may_write_file(*file, given.output.force)) return why;
   if (given.output.path.empty()) return std::nullopt;
@@ -34,6 +35,13 @@ std::optional<rosin::failure> cannot_deliver(const options& given) {
   if (given.output.format != "csv") return rosin::failure{"--out -: only csv goes to standard output"};
   if (given.json_file == "-") return rosin::failure{"--out - and --json -: only one of them can have standard output"};
   return std::nullopt;
+}
+
+/// Before any work: slips are told from sticking by the rod's speed.
+std::optional<rosin::failure> cannot_tell_slips(const options& given, const rosin::rig& rig, const rosin::take& take) {
+  const bool measured = std::any_of(rig.channels.begin(), rig.channels.end(), [](const auto& c) { return c.quantity == rosin::quantity::bow_speed && c.per_full_scale; });
+  if (given.slips.empty() || take.speed_m_s || !take.speed_profile_m_s.empty() || measured) return std::nullopt;
+  return rosin::failure{rig.file + ":" + std::to_string(take.line) + ": --slips: take \"" + take.name + "\" has no speed_m_s: slips cannot be told from sticking"};
 }
 
 std::string names_of(const rosin::rig& rig) {
@@ -69,6 +77,8 @@ std::optional<rosin::failure> deliver(const options& given, const take_reconstru
   if (given.output.path == "-") rosin::write_csv(std::cout, table_of(r, from));
   else if (!given.output.path.empty())
     if (auto why = save(given.output, table_of(r, from))) return why;
+  if (!given.slips.empty())
+    if (auto why = save({given.slips, "csv", given.output.force}, table_of(slips_of(r), r, from))) return why;
   if (!given.report.empty())
     if (auto why = write_reconstruction_report(given.report, given.output.force, r, fitted, from)) return why;
   if (!given.json_file.empty())
@@ -99,6 +109,7 @@ exit_code run(const options& given, provenance from) {
   const rosin::rig& rig = folder->rig;
   const auto take = bowed_take(rig, given.take);
   if (!take) return fail(take.error(), as_json);
+  if (const auto why = cannot_tell_slips(given, rig, **take)) return fail(why->message, as_json);
   const auto read = read_sound_take(rig, **take, from);
   if (!read) return fail(read.error(), as_json);
   std::optional<rig_calibration> fitted;
@@ -142,6 +153,7 @@ void add_reconstruct(CLI::App& app, exit_code& result) {
   command->add_flag("--frequency-domain", given->how.frequency_domain, "Eqs. (10): the most nearly periodic stretch only, terminations as declared");
   command->add_option("--calibration", given->calibration, "Take the calibration from a file of `rosin fit --json`")->type_name("FILE.json");
   command->add_option("--model", given->model, "Reconstruct with the corrected model of `rosin diagnose --json`")->type_name("FILE.json")->excludes("--calibration")->excludes("--paper")->excludes("--frequency-domain");
+  command->add_option("--slips", given->slips, "Write a table of the slips, one row each: loops of force against velocity, track along the rod")->type_name("FILE.csv");
   command->add_option("--report", given->report, "Write a page with figures (needs gnuplot)")->type_name("FILE.html");
   command->add_option("--json", given->json_file, "Write a summary to FILE; without one, or with -, to standard output")->expected(0, 1)->default_str("-")->type_name("FILE");
   command->add_flag("--strict", given->strict, "Exit with 1 on warnings as well");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "reconstruct_report.hpp"
+#include "reconstruct_slips.hpp"
 
 namespace tool {
 
@@ -180,6 +181,7 @@ std::optional<rosin::failure> write_reconstruction_report(const std::string& pat
   page.result = facts_of(r);
   const window steady = steady_window(r);
   page.figures = {steady_figure(r, steady), plane_figure(r, steady)};
+  for (auto& f : figures_of(slips_of(r), r, steady.begin, steady.begin + periods(r, 8))) page.figures.push_back(std::move(f));
   for (auto f : {transient_figure(r), domains_figure(r), torsion_figure(r, steady), magnet_figure(r, steady)})
     if (f) page.figures.push_back(*std::move(f));
   if (fitted) {

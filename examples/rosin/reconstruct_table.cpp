@@ -2,7 +2,7 @@
 //
 // A reconstruction as table, as JSON, and in words.
 //
-#include "reconstruct_take.hpp"
+#include "reconstruct_slips.hpp"
 
 namespace tool {
 
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-std::string figure(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
+std::string in_digits(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
 
 std::string processing(const take_reconstruction& r) {
   std::string out = r.how.frequency_domain ? "frequency domain" : "time domain";
@@ -70,15 +70,15 @@ std::string tuning_text(const take_reconstruction& r) {
   if (!r.result.tuning) return "off";
   const auto& t = *r.result.tuning;
   const auto w = words_of(r);
-  return "delays " + figure(1e9 * t.shift[0], "%+.1f") + " and " + figure(1e9 * t.shift[1], "%+.1f") + " ns, gain ratio " + figure(100 * t.shift[5], "%+.4f") +
-         " %, " + figure(t.sigmas, "%.1f") + " standard deviations; as tension " + figure(100 * w.tension, "%+.4f") + " %, as contact " +
-         figure(w.contact, "%+.6f") + " of the length; Delta " + figure(t.delta_before, "%.5f") + " -> " + figure(t.delta_after, "%.5f");
+  return "delays " + in_digits(1e9 * t.shift[0], "%+.1f") + " and " + in_digits(1e9 * t.shift[1], "%+.1f") + " ns, gain ratio " + in_digits(100 * t.shift[5], "%+.4f") +
+         " %, " + in_digits(t.sigmas, "%.1f") + " standard deviations; as tension " + in_digits(100 * w.tension, "%+.4f") + " %, as contact " +
+         in_digits(w.contact, "%+.6f") + " of the length; Delta " + in_digits(t.delta_before, "%.5f") + " -> " + in_digits(t.delta_after, "%.5f");
 }
 
 std::string dc_text(const take_reconstruction& r) {
   if (!r.ac_coupled) return "measured (DC coupled sensors)";
   if (!r.dc.available) return "unknown: AC coupled sensors; force_N has no mean of its own";
-  return "unknown: AC coupled sensors; estimated as " + figure(r.dc.level_N, "%+.3f") + " +- " + figure(r.dc.sd_N, "%.3f") +
+  return "unknown: AC coupled sensors; estimated as " + in_digits(r.dc.level_N, "%+.3f") + " +- " + in_digits(r.dc.sd_N, "%.3f") +
          " N to be added (a friction coefficient of 0.65 +- 0.15 in mid-slip times the normal force); not added in the file";
 }
 
@@ -94,31 +94,32 @@ std::vector<std::pair<std::string, std::string>> facts_of(const take_reconstruct
   const auto& sd = r.result.sd;
   std::vector<std::pair<std::string, std::string>> out{
       {"processing", processing(r)},
-      {"band", "pass " + figure(r.limits.pass_Hz, "%.0f") + " Hz, stop " + figure(r.limits.stop_Hz, "%.0f") + " Hz"},
-      {"known", figure(r.time_s(r.known.begin), "%.6f") + " to " + figure(r.time_s(r.known.end), "%.6f") + " s of " + figure(r.sampled_s, "%.6f") + " s"},
-      {"calibration", r.calibration.from + "; contact at " + figure(r.result.used.position, "%.6f") + ", delays " +
-                          figure(1e6 * r.result.used.at.delay_s[0], "%.4f") + " and " + figure(1e6 * r.result.used.at.delay_s[1], "%.4f") + " us, gains " +
-                          figure(r.result.used.gain[0], "%.5f") + " and " + figure(r.result.used.gain[1], "%.5f")},
+      {"band", "pass " + in_digits(r.limits.pass_Hz, "%.0f") + " Hz, stop " + in_digits(r.limits.stop_Hz, "%.0f") + " Hz"},
+      {"known", in_digits(r.time_s(r.known.begin), "%.6f") + " to " + in_digits(r.time_s(r.known.end), "%.6f") + " s of " + in_digits(r.sampled_s, "%.6f") + " s"},
+      {"calibration", r.calibration.from + "; contact at " + in_digits(r.result.used.position, "%.6f") + ", delays " +
+                          in_digits(1e6 * r.result.used.at.delay_s[0], "%.4f") + " and " + in_digits(1e6 * r.result.used.at.delay_s[1], "%.4f") + " us, gains " +
+                          in_digits(r.result.used.gain[0], "%.5f") + " and " + in_digits(r.result.used.gain[1], "%.5f")},
       {"fine tuning", tuning_text(r)},
-      {"Delta of the two versions, Eq. (12)", "force " + figure(r.delta_force, "%.5f") + ", velocity " + figure(r.delta_velocity, "%.5f")},
-      {"force, random sd", figure(1e3 * std::sqrt(mean_square(r.force_sd_N, r.known)), "%.3g") + " mN rms (sensor noise " + figure(1e3 * sd.force_noise_N, "%.3g") +
-                               ", versions disagree " + figure(1e3 * sd.force_model_N, "%.3g") + ", rest calibration)"},
-      {"velocity, random sd", figure(1e3 * std::sqrt(mean_square(r.velocity_sd_m_s, r.known)), "%.3g") + " mm/s rms (sensor noise " +
-                                  figure(1e3 * sd.velocity_noise_m_s, "%.3g") + ", versions disagree " + figure(1e3 * sd.velocity_model_m_s, "%.3g") + ", rest calibration)"},
-      {"common scale, systematic sd", "force " + figure(100 * sd.force_scale, "%.2f") + " %, velocity " + figure(100 * sd.velocity_scale, "%.2f") + " %"},
+      {"Delta of the two versions, Eq. (12)", "force " + in_digits(r.delta_force, "%.5f") + ", velocity " + in_digits(r.delta_velocity, "%.5f")},
+      {"force, random sd", in_digits(1e3 * std::sqrt(mean_square(r.force_sd_N, r.known)), "%.3g") + " mN rms (sensor noise " + in_digits(1e3 * sd.force_noise_N, "%.3g") +
+                               ", versions disagree " + in_digits(1e3 * sd.force_model_N, "%.3g") + ", rest calibration)"},
+      {"velocity, random sd", in_digits(1e3 * std::sqrt(mean_square(r.velocity_sd_m_s, r.known)), "%.3g") + " mm/s rms (sensor noise " +
+                                  in_digits(1e3 * sd.velocity_noise_m_s, "%.3g") + ", versions disagree " + in_digits(1e3 * sd.velocity_model_m_s, "%.3g") + ", rest calibration)"},
+      {"common scale, systematic sd", "force " + in_digits(100 * sd.force_scale, "%.2f") + " %, velocity " + in_digits(100 * sd.velocity_scale, "%.2f") + " %"},
       {"force's DC level", dc_text(r)},
-      {"force in the steady part", figure(low, "%.4f") + " to " + figure(high, "%.4f") + " N" +
-                                       (r.normal_force_N ? ", normal force " + figure(*r.normal_force_N, "%.4f") + " N (" + r.normal_from + ")" : "")}};
+      {"force in the steady part", in_digits(low, "%.4f") + " to " + in_digits(high, "%.4f") + " N" +
+                                       (r.normal_force_N ? ", normal force " + in_digits(*r.normal_force_N, "%.4f") + " N (" + r.normal_from + ")" : "")}};
   if (r.period_s > 0)
-    out.emplace_back("repeats every", figure(1e3 * r.period_s, "%.5f") + " ms (" + figure(1 / r.period_s, "%.2f") + " Hz), best from " +
-                                          figure(r.time_s(r.steady_begin), "%.4f") + " s on, remainder " + figure(100 * r.result.periodic->source.remainder, "%.2g") + " %");
-  if (r.domains_differ) out.emplace_back("time against frequency domain", "Delta of the force " + figure(*r.domains_differ, "%.5f"));
+    out.emplace_back("repeats every", in_digits(1e3 * r.period_s, "%.5f") + " ms (" + in_digits(1 / r.period_s, "%.2f") + " Hz), best from " +
+                                          in_digits(r.time_s(r.steady_begin), "%.4f") + " s on, remainder " + in_digits(100 * r.result.periodic->source.remainder, "%.2g") + " %");
+  if (r.domains_differ) out.emplace_back("time against frequency domain", "Delta of the force " + in_digits(*r.domains_differ, "%.5f"));
   if (!r.rod_m_s.empty())
-    out.emplace_back("slips", std::to_string(r.slips.size()) + " in all; " + figure(r.slips_per_period(), "%.2f") + " a period and " +
-                                  figure(100 * slipping_fraction(r, part), "%.1f") + " % of the time in the steady part (" + slipping_means(r) + ")");
+    out.emplace_back("slips", std::to_string(r.slips.size()) + " in all; " + in_digits(r.slips_per_period(), "%.2f") + " a period and " +
+                                  in_digits(100 * slipping_fraction(r, part), "%.1f") + " % of the time in the steady part (" + slipping_means(r) + ")");
+  for (auto& fact : facts_of(slips_of(r), r)) out.push_back(std::move(fact));
   for (const auto& c : r.comparisons)
-    out.emplace_back("channel " + c.channel + " against the result", c.what + ": channel = " + figure(c.scale, "%.5g") + " x result, Delta " + figure(c.delta, "%.4f") +
-                                                                         ", correlation " + figure(c.correlation, "%.5f"));
+    out.emplace_back("channel " + c.channel + " against the result", c.what + ": channel = " + in_digits(c.scale, "%.5g") + " x result, Delta " + in_digits(c.delta, "%.4f") +
+                                                                         ", correlation " + in_digits(c.correlation, "%.5f"));
   return out;
 }
 
@@ -127,11 +128,11 @@ std::string summary_of(const take_reconstruction& r) {
   const auto [low, high] = extremes(r.force_N, part.begin, part.end);
   std::string out = r.take + ": ";
   if (r.period_s > 0 && !r.rod_m_s.empty() && !r.slips.empty())
-    out += "motion with " + figure(r.slips_per_period(), "%.2g") + (std::abs(r.slips_per_period() - 1) < 0.05 ? " slip" : " slips") + " a period of " +
-           figure(1e3 * r.period_s, "%.4g") + " ms; ";
-  out += "friction runs from " + figure(low, "%.3f") + " to " + figure(high, "%.3f") + " N" + (r.ac_coupled ? " about an unknown mean" : "") + ", random error " +
-         figure(1e3 * std::sqrt(mean_square(r.force_sd_N, r.known)), "%.2g") + " mN, common scale +- " + figure(100 * r.result.sd.force_scale, "%.2g") +
-         " %; its two versions differ by Delta = " + figure(r.delta_force, "%.4f") + ".";
+    out += "motion with " + in_digits(r.slips_per_period(), "%.2g") + (std::abs(r.slips_per_period() - 1) < 0.05 ? " slip" : " slips") + " a period of " +
+           in_digits(1e3 * r.period_s, "%.4g") + " ms; ";
+  out += "friction runs from " + in_digits(low, "%.3f") + " to " + in_digits(high, "%.3f") + " N" + (r.ac_coupled ? " about an unknown mean" : "") + ", random error " +
+         in_digits(1e3 * std::sqrt(mean_square(r.force_sd_N, r.known)), "%.2g") + " mN, common scale +- " + in_digits(100 * r.result.sd.force_scale, "%.2g") +
+         " %; its two versions differ by Delta = " + in_digits(r.delta_force, "%.4f") + ".";
   return out;
 }
 
@@ -139,7 +140,7 @@ rosin::table table_of(const take_reconstruction& r, const provenance& from) {
   rosin::table t;
   t.comments = from.comment_lines();
   t.comments.push_back("rig " + r.title);
-  t.comments.push_back("take " + r.take + ", " + std::to_string(r.force_N.size()) + " samples at " + figure(r.rate_Hz, "%.10g") + " Hz");
+  t.comments.push_back("take " + r.take + ", " + std::to_string(r.force_N.size()) + " samples at " + in_digits(r.rate_Hz, "%.10g") + " Hz");
   for (const auto& [what, value] : facts_of(r)) t.comments.push_back(what + ": " + value);
   if (!r.torsion_m_s.empty()) t.comments.emplace_back("torsion_velocity_m_s: a model driven by the force, with the declared [torsion]");
   t.comments.emplace_back("..._sd_...: random, one standard deviation; ..._scale_sd_...: systematic, common to all samples; empty: cannot be known");
@@ -164,6 +165,8 @@ rosin::table table_of(const take_reconstruction& r, const provenance& from) {
   t.add("torsion_velocity_m_s", r.torsion_m_s.empty() ? std::vector<double>(n, nan) : r.torsion_m_s);
   t.add("force_scale_sd_N", force_scale, 5);
   t.add("velocity_scale_sd_m_s", velocity_scale, 5);
+  const auto place = slips_of(r).place_m;
+  t.add("place_on_rod_m", place.empty() ? std::vector<double>(n, nan) : place);
   return t;
 }
 
@@ -189,6 +192,7 @@ json to_json(const take_reconstruction& r, const provenance& from) {
   out["steady_s"] = {r.time_s(part.begin), r.time_s(part.end)};
   out["slips"] = json::array();
   for (const auto& [begin, end] : r.slips) out["slips"].push_back({r.time_s(begin), r.time_s(end)});
+  out["loops"] = to_json(slips_of(r));
   out["comparisons"] = json::array();
   for (const auto& c : r.comparisons)
     out["comparisons"].push_back({{"channel", c.channel}, {"what", c.what}, {"scale", c.scale}, {"delta", c.delta}, {"correlation", c.correlation}});
