@@ -37,13 +37,6 @@ std::optional<rosin::failure> cannot_deliver(const options& given) {
   return std::nullopt;
 }
 
-/// Before any work: slips are told from sticking by the rod's speed.
-std::optional<rosin::failure> cannot_tell_slips(const options& given, const rosin::rig& rig, const rosin::take& take) {
-  const bool measured = std::any_of(rig.channels.begin(), rig.channels.end(), [](const auto& c) { return c.quantity == rosin::quantity::bow_speed && c.per_full_scale; });
-  if (given.slips.empty() || take.speed_m_s || !take.speed_profile_m_s.empty() || measured) return std::nullopt;
-  return rosin::failure{rig.file + ":" + std::to_string(take.line) + ": --slips: take \"" + take.name + "\" has no speed_m_s: slips cannot be told from sticking"};
-}
-
 std::string names_of(const rosin::rig& rig) {
   std::string out;
   for (const auto& t : rig.takes)
@@ -109,7 +102,6 @@ exit_code run(const options& given, provenance from) {
   const rosin::rig& rig = folder->rig;
   const auto take = bowed_take(rig, given.take);
   if (!take) return fail(take.error(), as_json);
-  if (const auto why = cannot_tell_slips(given, rig, **take)) return fail(why->message, as_json);
   const auto read = read_sound_take(rig, **take, from);
   if (!read) return fail(read.error(), as_json);
   std::optional<rig_calibration> fitted;

@@ -56,6 +56,36 @@ below "Delta" "$delta" "$paper"
 expect 0 reconstruct rig --take bow-1 --no-fine-tune --calibration fit.json --json n.json
 grep -q '"fine_tuning": null' n.json || { echo "FAILED: fine tuning although switched off"; failures=1; }
 
+# the slips, one by one: each row again from the samples between its times
+expect 0 reconstruct rig --take bow-1 --out s.csv --slips slips.csv --json s.json --calibration fit.json --no-fine-tune
+says "loops of force against velocity: no sense"   # humps of a force that no friction made
+grep -q '"sense": "none"' s.json || { echo "FAILED: no loops in the summary"; failures=1; }
+perl -e '
+  sub rows { open my $f, "<", $_[0] or die; my (@name, @out);
+    while (<$f>) { next if /^#/; chomp; my @c = split /,/, $_, -1; if (!@name) { @name = @c } else { my %r; @r{@name} = @c; push @out, \%r } } @out }
+  my @take = rows("s.csv"); my ($bad, $n, $rod, $rate) = (0, 0, 0.05, 48000);
+  my $near = sub { my ($what, $a, $b, $scale) = @_; if (abs($a - $b) > 1e-4 * $scale) { print "FAILED: $what $a is not $b\n"; $bad = 1 } };
+  for my $s (rows("slips.csv")) {
+    my ($i, $j) = map { int($s->{$_} * $rate + 0.5) } "begin_s", "end_s";
+    my @v = map { $_->{velocity_m_s} + $_->{torsion_velocity_m_s} - $rod } @take[$i .. $j]; my @f = map { $_->{force_N} } @take[$i .. $j];
+    my ($way, $work, $area, $fast) = (0) x 4;
+    for my $k (0 .. $#v) {
+      $fast = -$v[$k] if abs($v[$k]) > abs($fast);
+      if ($k) { $way -= ($v[$k] + $v[$k - 1]) / (2 * $rate); $work -= ($v[$k] * $f[$k] + $v[$k - 1] * $f[$k - 1]) / (2 * $rate) }
+      $area += ($v[$k - 1] * $f[$k] - $v[$k] * $f[$k - 1]) / 2;   # $k - 1 = -1: the last
+    }
+    $near->("distance", $s->{distance_m}, $way, 1e-3);
+    $near->("work", $s->{dissipated_J}, $work, 1e-4);
+    $near->("area", $s->{loop_area_W}, $area, 0.1);
+    $near->("speed", $s->{fastest_m_s}, $fast, 1);
+    $near->("place", $s->{to_m} - $s->{from_m}, $take[$j]{place_on_rod_m} - $take[$i]{place_on_rod_m}, 1e-3);
+    $n++;
+  }
+  print "FAILED: $n slips\n" if $n < 10;
+  exit($bad || $n < 10)' || failures=$((failures + 1))
+expect 2 reconstruct rig --take bow-1 --slips slips.csv
+says "slips.csv: exists already"
+
 # other forms
 expect 0 reconstruct rig --take bow-1 --out a.npy --format npy --calibration fit.json --no-fine-tune
 same "$(head -c 6 a.npy | tail -c 5)" NUMPY
@@ -100,7 +130,8 @@ expect 2 reconstruct short --take bow-1
 
 if command -v gnuplot >/dev/null; then
   expect 0 reconstruct rig --take bow-1 --report page.html
-  [ "$(grep -c '<svg' page.html)" -ge 4 ] || { echo "FAILED: figures are missing"; failures=1; }
+  grep -q 'place of the contact on the rod' page.html || { echo "FAILED: no track along the rod"; failures=1; }
+  [ "$(grep -c '<svg' page.html)" -ge 6 ] || { echo "FAILED: figures are missing"; failures=1; }
 else
   echo "skipped: the report, no gnuplot"
 fi
