@@ -6,6 +6,7 @@
 #include "progress.hpp"
 #include "rig_input.hpp"
 #include "simulate_declaration.hpp"
+#include "simulate_model.hpp"
 #include "simulate_truth.hpp"
 
 #include <iostream>
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct options {
-  std::string rig, out, truth, format = "csv";
+  std::string rig, out, truth, model, format = "csv";
   std::optional<std::uint64_t> seed;
   bool force = false, json = false;
 
@@ -143,6 +144,7 @@ void print_text(const simulation_plan& plan, const std::vector<simulated_take>& 
     if (take.kind == rosin::take_kind::bow) std::cout << ", " << name_of(motion_of(takes[i].truth)) << ", " << takes[i].truth.slips << " slips";
     std::cout << '\n';
   }
+  for (const auto& effect : plan.effects) std::cout << "with: " << effect << '\n';
   for (const auto& line : warned) std::cout << "warning: " << line << '\n';
   for (const auto& line : plan.notes) std::cout << "note: " << line << '\n';
   for (const auto& line : plan.assumed) std::cout << "assumed: " << line << '\n';
@@ -160,6 +162,7 @@ json result_json(const simulation_plan& plan, const std::vector<simulated_take>&
     if (!to.tables[i].empty()) one.update({{"truth", to.tables[i].string()}, {"motion", name_of(motion_of(takes[i].truth))}, {"slips", takes[i].truth.slips}});
     out["takes"].push_back(std::move(one));
   }
+  if (!plan.effects.empty()) out["effects"] = plan.effects;
   out["warnings"] = warned;
   out["notes"] = plan.notes;
   out["assumed"] = plan.assumed;
@@ -171,13 +174,26 @@ rosin::outcome<std::string> declared_text(const std::string& file) {
   return text ? declaration(*text, file) : text;
 }
 
+/// From the rig file alone, or with the corrected model of a diagnosis.
+rosin::outcome<simulation_plan> make_plan(const options& given, const rosin::rig& rig, provenance& from) {
+  if (given.model.empty()) return plan_simulation(rig, given.seed);
+  if (const auto why = from.add_input(given.model)) return *why;
+  const auto model = read_diagnosed_model(given.model);
+  if (!model) return rosin::failure{model.error()};
+  const auto corrected = with_model(rig, *model);
+  auto plan = plan_simulation(corrected, given.seed);
+  if (!plan) return plan;
+  if (const auto why = apply_model(*model, corrected, *plan)) return *why;
+  return plan;
+}
+
 exit_code run(const options& given, provenance from) {
   const auto rig = rosin::load_rig(given.rig, rosin::take_files::to_be_made);
   if (!rig) return fail(rig.error(), given.json);
   if (const auto why = from.add_input(rig->file)) return fail(why->message, given.json);
   const auto declared = declared_text(rig->file);
   if (!declared) return fail(declared.error(), given.json);
-  auto plan = plan_simulation(*rig, given.seed);
+  auto plan = make_plan(given, *rig, from);
   if (!plan) return fail(plan.error(), given.json);
   const auto to = find_places(given, *rig);
   if (const auto why = problem_with(to, given, *rig); !why.empty()) return fail(why, given.json);
@@ -202,6 +218,7 @@ void add_simulate(CLI::App& app, exit_code& result) {
   command->add_option("--out", given->out, "Folder for the recordings and their rig.toml")->required()->type_name("FOLDER");
   command->add_option("--truth", given->truth, "Where the truth goes: a folder, or a file that ends in .json; FOLDER-truth if left out")
       ->type_name("FOLDER|FILE");
+  command->add_option("--model", given->model, "With the corrected model of this diagnosis (rosin diagnose --json)")->type_name("FILE");
   command->add_option("--seed", given->seed, "Everything drawn at random follows from it; overrides the rig file's")
       ->check(CLI::NonNegativeNumber)
       ->type_name("NUMBER");
@@ -211,8 +228,8 @@ void add_simulate(CLI::App& app, exit_code& result) {
   add_force_option(*command, given->force);
   add_json_option(*command, given->json);
   command->footer(
-      "Plucks, quiet and bowed takes of a stiff string between rigid ends, with torsion and the law of friction that [model]\n"
-      "and [friction] name; sensors whose gains are off within their tolerances, noise, AC coupling and converters.\n"
+      "Plucks, quiet and bowed takes of a stiff string between ends that are rigid or move as [terminations] says (modes), with\n"
+      "torsion and the law of friction that [model] and [friction] name; sensors whose gains are off within their tolerances, noise, AC coupling and converters.\n"
       "[simulate] sets rate, duration, bits, noise, seed, and with nominal_scatter = true lets the string differ from what the\n"
       "file declares. The rig.toml beside the recordings tells none of that; the truth goes to another folder.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });

@@ -6,6 +6,7 @@
 #include <rosin/adapt/problem_log.hpp>
 #include <rosin/simulate/random_rig.hpp>
 
+#include <numbers>
 #include <set>
 
 namespace tool {
@@ -28,13 +29,16 @@ double deviation(const simulation_plan& plan, const std::string& name, double sd
 
 std::string digits(double x) { return rosin::value_range::number(x); }
 
+bool has_modes(const std::optional<rosin::termination>& end) { return end && end->kind == rosin::termination::form::modes; }
+
 /// Whatever the modal simulation has no means for.
 void refuse_unknown_physics(const rosin::rig& rig, rosin::problem_log& log, std::vector<std::string>& notes) {
   const auto ends = {std::pair{"near", &rig.near}, std::pair{"far", &rig.far}};
   for (const auto& [name, end] : ends) {
     if (!*end || (*end)->kind == rosin::termination::form::rigid) continue;
     if ((*end)->kind == rosin::termination::form::fit) notes.push_back(std::string{"terminations."} + name + " = \"fit\": simulated as rigid");
-    else log.add(0, std::string{"terminations."} + name, "only rigid terminations can be simulated");
+    if ((*end)->kind == rosin::termination::form::table)
+      log.add(0, std::string{"terminations."} + name, (*end)->file + ": a table of admittance cannot be simulated; only rigid terminations and modes can");
   }
   const auto physics = rig.model ? rig.model->physics : std::vector<std::string>{};
   for (const auto& name : physics)
@@ -46,6 +50,8 @@ void refuse_channels(const rosin::rig& rig, rosin::problem_log& log) {
   for (const auto& c : rig.channels) {
     const std::string place = "channels." + c.name;
     if (c.quantity == quantity::sound) log.add(c.line, place + ".quantity", "sound cannot be simulated");
+    if (c.quantity == quantity::string_displacement && (has_modes(rig.near) || has_modes(rig.far)))
+      log.add(c.line, place + ".quantity", "a displacement cannot be simulated where [terminations] move");
     if (!c.position) continue;
     for (const auto& take : rig.takes)
       if (take.kind != take_kind::quiet && rig.position_of(take) != c.position)
@@ -119,6 +125,13 @@ std::optional<rosin::failure> set_string(const rosin::rig& rig, simulation_plan&
   return std::nullopt;
 }
 
+void set_ends(const rosin::rig& rig, simulation_plan& plan) {
+  for (const auto& [end, declared] : {std::pair{std::size_t{0}, &rig.near}, std::pair{std::size_t{1}, &rig.far}}) {
+    if (!has_modes(*declared)) continue;
+    for (const auto& m : (*declared)->modes) plan.burden.string.ends[end].modes.push_back({m.frequency_Hz, m.q, plan.rig.string.impedance_Ns_m() / m.mass_kg});
+  }
+}
+
 void set_channels(const rosin::rig& rig, simulation_plan& plan) {
   const auto is_force = [](const auto& c) { return c.quantity == quantity::termination_force; };
   const auto force = std::find_if(rig.channels.begin(), rig.channels.end(), is_force);
@@ -126,7 +139,7 @@ void set_channels(const rosin::rig& rig, simulation_plan& plan) {
   for (const auto& c : rig.channels) {  // noise is declared in newtons: other channels get the same share of full scale
     const double full = is_force(c) ? c.per_full_scale.value_or(1) : force_scale_N;
     const bool calibrated = c.per_full_scale.has_value() || c.quantity == quantity::termination_force;
-    plan.channels.push_back({c, calibrated ? 1 + deviation(plan, "gain " + c.name, gain_tolerance_of(c) / 2) : 1, plan.noise_N / full});
+    plan.channels.push_back({c, calibrated ? 1 + deviation(plan, "gain " + c.name, gain_tolerance_of(c) / 2) : 1, plan.noise_N / full, {}});
   }
 }
 
@@ -139,7 +152,7 @@ double true_position(const rosin::rig& rig, const rosin::take& take, const simul
 }
 
 true_take realise(const rosin::rig& rig, const rosin::take& take, simulation_plan& plan) {
-  true_take out{take, take.kind == take_kind::quiet ? 0 : true_position(rig, take, plan), {}, {}};
+  true_take out{take, take.kind == take_kind::quiet ? 0 : true_position(rig, take, plan), {}, {}, {}};
   rosin::gaussian_source start{seed_for(plan.seed, "start " + take.name)};
   const double later = start.uniform(0, std::min(2e-4, plan.duration_s / 10));
   const double begin = take.start_s.value_or(std::min(usual_release_s, plan.duration_s / 3) + later);
@@ -149,13 +162,26 @@ true_take realise(const rosin::rig& rig, const rosin::take& take, simulation_pla
                  .release_s = begin,
                  .duration_s = plan.duration_s};
   if (take.kind == take_kind::bow)
-    out.rod = {.steady = {.speed_m_s = take.speed_m_s.value_or(0), .normal_force_N = take.normal_force_N.value_or(0), .start_s = begin},
+    static_cast<rosin::profiled_rod&>(out.rod) = {
+               .steady = {.speed_m_s = take.speed_m_s.value_or(0), .normal_force_N = take.normal_force_N.value_or(0), .start_s = begin},
                .speed_m_s = take.speed_profile_m_s,
                .normal_force_N = take.normal_force_profile_N};
   return out;
 }
 
 }  // namespace
+
+rosin::rod_state moving_rod::operator()(double t) const noexcept {
+  const auto declared = rosin::profiled_rod::operator()(t);
+  const double wave = std::sin(2 * std::numbers::pi * ripple_Hz * t);
+  return {declared.velocity_m_s * (1 + speed_ripple * wave), declared.normal_force_N * (1 + force_ripple * wave)};
+}
+
+rosin::modal_rig stretched(rosin::modal_rig rig, double tension_drift) {
+  rig.string.tension_N *= 1 + tension_drift;
+  rig.string.fundamental_Hz *= std::sqrt(1 + tension_drift);
+  return rig;
+}
 
 std::uint64_t seed_for(std::uint64_t seed, const std::string& name) {
   std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a, then the finaliser of splitmix64
@@ -179,6 +205,7 @@ rosin::outcome<simulation_plan> plan_simulation(const rosin::rig& rig, std::opti
   refuse_takes(rig, plan.duration_s, log);
   if (!log.empty()) return log.to_failure();
   if (auto why = set_string(rig, plan)) return *why;
+  set_ends(rig, plan);
   auto friction = choose_friction(rig, plan.assumed, plan.notes);
   if (!friction) return rosin::failure{friction.error()};
   plan.friction = *std::move(friction);

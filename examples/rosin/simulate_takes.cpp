@@ -14,11 +14,18 @@ using samples = std::vector<double>;
 constexpr double loudest_share = 0.7;
 
 rosin::outcome<rosin::modal_take> happen(const simulation_plan& plan, const true_take& take) {
-  if (take.declared.kind == take_kind::pluck) return rosin::simulate_pluck(plan.rig, take.pluck, plan.settings);
+  const bool plain = plan.burden.none();
+  if (take.declared.kind == take_kind::pluck)
+    return plain ? rosin::simulate_pluck(plan.rig, take.pluck, plan.settings) : rosin::simulate_pluck(plan.rig, plan.burden, take.pluck, plan.settings);
   if (take.declared.kind == take_kind::bow) {
     const rosin::modal_stroke stroke{.position = take.position, .duration_s = plan.duration_s};
-    return std::visit([&](const auto& law) { return rosin::simulate_stroke(plan.rig, law, take.rod, stroke, plan.settings); },
-                      plan.friction.law);
+    const auto rig = stretched(plan.rig, plan.tension_drift);
+    return std::visit(
+        [&](const auto& law) {
+          return plain ? rosin::simulate_stroke(rig, law, take.rod, stroke, plan.settings)
+                       : rosin::simulate_stroke(rig, plan.burden, law, take.rod, stroke, plan.settings);
+        },
+        plan.friction.law);
   }
   const auto size = std::lround(plan.duration_s * plan.settings.sample_rate_Hz);
   return rosin::detail::silent_take(plan.settings.sample_rate_Hz, static_cast<std::size_t>(size));
@@ -77,9 +84,12 @@ void record_channel(const simulation_plan& plan, std::size_t i, std::size_t inde
                               .newtons_per_full_scale = full,
                               .noise_N = share * full,
                               .ac_coupled_Hz = channel != nullptr ? channel->declared.ac_coupled_Hz.value_or(0) : 0,
+                              .hum = channel != nullptr ? channel->hum : std::vector<rosin::hum_line>{},
                               .bits = plan.bits == 0 ? 32 : plan.bits};
   const auto seed = seed_for(plan.seed, "noise " + take.declared.name + " " + std::to_string(index));
-  const samples signal = channel != nullptr ? measured(plan, take, out.truth, channel->declared) : samples(out.truth.size(), 0.0);
+  samples signal = channel != nullptr ? measured(plan, take, out.truth, channel->declared) : samples(out.truth.size(), 0.0);
+  if (channel != nullptr && channel->declared.quantity == quantity::termination_force)
+    for (double& f : signal) f += take.offset_N[channel->declared.name == "near" ? 0 : 1] / channel->gain;
   const auto converted = rosin::convert(signal, plan.settings.sample_rate_Hz, with, seed);
   auto& column = out.recording.channels.at(index);
   column.resize(converted.size());

@@ -35,6 +35,18 @@ json channels_json(const simulation_plan& plan) {
   return out;
 }
 
+json ends_json(const simulation_plan& plan) {
+  json out = json::object();
+  for (std::size_t e = 0; e < 2; ++e) {
+    json modes = json::array();
+    const auto add = [&](double frequency_Hz, double q, double mass_kg) { modes.push_back({{"frequency_Hz", frequency_Hz}, {"q", q}, {"mass_kg", mass_kg}}); };
+    for (const auto& m : plan.burden.string.ends[e].modes) add(m.frequency_Hz, m.q, plan.rig.string.impedance_Ns_m() / m.per_mass_per_s);
+    if (const auto& s = plan.burden.string.supports[e]; s.mass_kg > 0) add(s.frequency_Hz, s.quality, s.mass_kg);
+    out[e == 0 ? "near" : "far"] = modes;
+  }
+  return out;
+}
+
 json profile_json(const rosin::profile& points) {
   json out = json::array();
   for (const auto& [t, y] : points) out.push_back({t, y});
@@ -93,12 +105,15 @@ json truth_document(const simulation_plan& plan, const std::vector<simulated_tak
   json out{{"schema", 1}, {"provenance", from.to_json()}, {"seed", plan.seed}};
   out["string"] = string_json(plan);
   out["torsion"] = torsion_json(plan);
+  out["terminations"] = ends_json(plan);
+  if (!plan.effects.empty()) out["effects"] = plan.effects;
   out["friction"] = plan.friction.to_json();
   out["channels"] = channels_json(plan);
   out["sample_rate_Hz"] = plan.settings.sample_rate_Hz;
   out["bits"] = plan.bits;
   out["low_pass"] = {{"pass_Hz", filter.pass_Hz()}, {"stop_Hz", filter.stop_Hz()}};
-  out["simulation"] = {{"method", "modes of the pinned stiff string, stepped exactly"},
+  out["simulation"] = {{"method", plan.burden.none() ? "modes of the pinned stiff string, stepped exactly"
+                                                              : "modes of the stiff string, stepped exactly; what it carries and ends on is solved for in every step"},
                        {"oversampling", plan.settings.oversampling},
                        {"mode_limit_Hz", plan.settings.mode_limit_Hz}};
   out["takes"] = json::array();

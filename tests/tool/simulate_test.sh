@@ -211,7 +211,7 @@ refuse 's/"pluck-1.wav"/"pluck-1.flac"/' 'take "pluck-1".file: is pluck-1.flac; 
 refuse 's/"pluck-1.wav"/"..\/pluck-1.wav"/' "leads out of the folder"
 refuse 's/"pluck-1.wav"/"more\/..\/quiet.wav"/' "is the file of another take too"
 refuse 's/^speed_m_s = 0.2/&\nstart_s = 0.01/' "stands beside speed_profile_m_s"
-refuse 's/^\[torsion\]/[terminations]\nfar = { modes = [ { frequency_Hz = 460, q = 35, mass_kg = 0.1 } ] }\n\n&/' "terminations.far: only rigid terminations can be simulated"
+refuse 's|^\[torsion\]|[terminations]\nfar = { modes = [ { frequency_Hz = 460, q = 0, mass_kg = 0.1 } ] }\n\n&|' "terminations.far"
 refuse 's/^friction = "velo/physics = ["torsion", "point-mass"]\n&/' 'model.physics: "point-mass" cannot be simulated'
 refuse 's/^far = .*/&\nmicrophone = { index = 2, quantity = "sound" }/' "channels.microphone.quantity: sound cannot be simulated"
 refuse 's/^far = .*/&\nmagnet = { index = 2, quantity = "string-velocity", position = 0.4 }/' "channels.magnet.position: is not the contact"

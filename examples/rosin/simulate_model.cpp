@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "simulate_model.hpp"
+
+#include <rosin/adapt/audio_sndfile.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <numbers>
+
+namespace tool {
+
+namespace {
+
+/// Reads a parameter of an effect; what is missing is kept for the message.
+class parameters_of {
+public:
+  explicit parameters_of(const found_effect& effect) : effect_{effect} {}
+  double operator()(const char* name) {
+    const auto it = effect_.parameters.find(name);
+    if (it != effect_.parameters.end()) return it->second;
+    if (missing.empty()) missing = name;
+    return 1;
+  }
+  /// 0 near, 1 far.
+  std::size_t side(const std::string& place) {
+    if (place != "near" && place != "far" && missing.empty()) missing = "end or channel";
+    return place == "far" ? 1 : 0;
+  }
+  std::string missing;
+
+private:
+  const found_effect& effect_;
+};
+
+using put = std::function<void(const found_effect&, parameters_of&, simulation_plan&)>;
+
+void put_hum(parameters_of& p, simulation_plan& plan) {
+  const rosin::hum_line line{p("frequency_Hz"), p("amplitude_N"), 0};
+  for (auto& c : plan.channels)
+    if (c.declared.quantity == rosin::quantity::termination_force) c.hum.push_back(line);
+  plan.notes.emplace_back("mains-hum: a diagnosis tells neither phase nor harmonics nor the weaker channel: the fundamental, alike in both, from phase 0");
+}
+
+void put_ripple(const found_effect& e, parameters_of& p, simulation_plan& plan) {
+  for (auto& take : plan.takes) {
+    take.rod.ripple_Hz = p("frequency_Hz");
+    (e.name == "speed-ripple" ? take.rod.speed_ripple : take.rod.force_ripple) = p("relative");
+  }
+  plan.notes.push_back(e.name + ": a diagnosis tells no phase: 0 at the first sample");
+}
+
+void put_ac_coupling(parameters_of& p, simulation_plan& plan) {
+  for (auto& c : plan.channels)
+    if (c.declared.quantity == rosin::quantity::termination_force) c.declared.ac_coupled_Hz = p("cutoff_Hz");
+}
+
+/// What is found in [friction] or in the fit of the string has been put in already.
+void put_nothing(const found_effect&, parameters_of&, simulation_plan&) {}
+
+const std::map<std::string, put>& can_be_put() {
+  using effect = const found_effect&;
+  using get = parameters_of&;
+  using plan = simulation_plan&;
+  static const std::map<std::string, put> all{
+      {"bending-stiffness", [](effect, get p, plan to) { to.rig.string.bending_stiffness_Nm2 += p("bending_stiffness_Nm2"); }},
+      {"frequency-dependent-loss", [](effect, get p, plan to) { to.rig.string.loss.internal_s += p("loss_internal_s"); }},
+      {"air-loss", [](effect, get p, plan to) { to.rig.string.loss.air_sqrt_Hz += p("loss_air_sqrt_Hz"); }},
+      {"tension-modulation", [](effect, get p, plan to) { to.burden.string.axial_stiffness_N = p("axial_stiffness_N"); }},
+      {"second-polarization", [](effect, get p, plan to) { to.burden.detuning = p("detuning"), to.burden.coupling = p("coupling"); }},
+      {"point-mass", [](effect, get p, plan to) { to.burden.string.loads.push_back({.position = p("position"), .mass_kg = p("mass_kg")}); }},
+      {"point-damper", [](effect, get p, plan to) { to.burden.string.loads.push_back({.position = p("position"), .resistance_Ns_m = p("resistance_Ns_m")}); }},
+      {"support-resonance",
+       [](effect e, get p, plan to) {
+         to.burden.string.ends[p.side(e.end)].modes.push_back({p("frequency_Hz"), p("q"), to.rig.string.impedance_Ns_m() / p("mass_kg")});
+       }},
+      {"ac-coupling", [](effect, get p, plan to) { put_ac_coupling(p, to); }},
+      {"sensor-resonance",
+       [](effect e, get p, plan to) {
+         const std::size_t c = p.side(e.channel);
+         to.burden.sensors.resonance_Hz[c] = p("frequency_Hz"), to.burden.sensors.resonance_q[c] = p("q");
+       }},
+      {"channel-skew", [](effect, get p, plan to) { to.burden.sensors.skew_s = p("skew_s"); }},
+      {"channel-crosstalk", [](effect, get p, plan to) { to.burden.sensors.crosstalk = p("fraction"); }},
+      {"sensor-nonlinearity", [](effect e, get p, plan to) { to.burden.sensors.quadratic_per_N[p.side(e.channel)] = p("quadratic_per_N"); }},
+      {"mains-hum", [](effect, get p, plan to) { put_hum(p, to); }},
+      {"slow-release",
+       [](effect, get p, plan to) {
+         for (auto& take : to.takes) take.pluck.release_duration_s = p("duration_s");
+       }},
+      {"torsion", [](effect, get p, plan to) { to.rig.torsion = {p("speed_ratio"), p("impedance_ratio"), p("q")}; }},
+      {"tension-drift", [](effect, get p, plan to) { to.tension_drift = p("relative"); }},
+      {"rod-resonance", [](effect, get p, plan to) { to.burden.rod = {p("mass_kg"), p("frequency_Hz"), p("q")}; }},
+      {"finite-contact-width", [](effect, get p, plan to) { to.burden.contact_width_m = p("width_m"); }},
+      {"speed-ripple", [](effect e, get p, plan to) { put_ripple(e, p, to); }},
+      {"normal-force-ripple", [](effect e, get p, plan to) { put_ripple(e, p, to); }},
+      {"thermal-friction", put_nothing},
+      {"elasto-plastic-friction", put_nothing}};
+  return all;
+}
+
+std::optional<double> value_of(const diagnosed_model& model, const std::string& name) {
+  const auto it = model.calibration.find(name);
+  return it == model.calibration.end() ? std::nullopt : std::optional{it->second};
+}
+
+/// Impedance as declared: the masses of a diagnosis refer to it.
+void put_string(const diagnosed_model& model, simulation_plan& plan) {
+  auto& s = plan.rig.string;
+  if (const auto f = value_of(model, "fundamental_Hz")) s.tension_N *= *f / s.fundamental_Hz, s.fundamental_Hz = *f;
+  if (const auto b = value_of(model, "inharmonicity")) s.bending_stiffness_Nm2 = *b * s.tension_N * std::pow(s.length_m / std::numbers::pi, 2);
+  if (const auto d = value_of(model, "inverse_quality")) s.loss.quality = 1 / *d;
+  s.loss.internal_s = value_of(model, "loss_internal_s").value_or(s.loss.internal_s);
+  s.loss.air_sqrt_Hz = value_of(model, "loss_air_sqrt_Hz").value_or(s.loss.air_sqrt_Hz);
+  if (value_of(model, "convention").value_or(-1) > 0) plan.rig.damping = rosin::damping_convention::kelvin_voigt;
+}
+
+/// Position of every place that was plucked and fitted, in the order in which a calibration counts them.
+std::vector<std::pair<double, double>> fitted_positions(const diagnosed_model& model, const rosin::rig& rig) {
+  std::vector<std::pair<double, double>> out;
+  for (const auto& take : rig.takes) {
+    const auto declared = rig.position_of(take);
+    if (!declared || !model.calibration.contains("release_s of " + take.name)) continue;
+    if (std::none_of(out.begin(), out.end(), [&](const auto& p) { return p.first == *declared; })) out.emplace_back(*declared, *declared);
+  }
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i].second = value_of(model, out.size() == 1 ? "position" : "position " + std::to_string(i + 1)).value_or(out[i].first);
+  return out;
+}
+
+void put_takes(const diagnosed_model& model, const rosin::rig& rig, simulation_plan& plan) {
+  const auto positions = fitted_positions(model, rig);
+  for (auto& take : plan.takes) {
+    const double declared = rig.position_of(take.declared).value_or(take.position);
+    const auto nearest = std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) { return std::abs(a.first - declared) < std::abs(b.first - declared); });
+    if (nearest != positions.end() && take.declared.kind != rosin::take_kind::quiet) take.position = take.pluck.position = declared + nearest->second - nearest->first;
+    if (take.declared.kind != rosin::take_kind::pluck) continue;
+    const auto of = [&](const char* name) { return value_of(model, std::string{name} + " of " + take.declared.name); };
+    take.pluck.release_s = of("release_s").value_or(take.pluck.release_s);
+    if (const auto ln = of("ln_strength")) take.pluck.force_N = std::exp(*ln);
+    take.offset_N = {of("offset_near_N").value_or(0), of("offset_far_N").value_or(0)};
+  }
+  for (auto& c : plan.channels)
+    if (const auto ln = value_of(model, "ln_gain_" + c.declared.name)) c.gain = std::exp(*ln);
+}
+
+found_effect effect_from(const json& m) {
+  found_effect out{m.at("effect").get<std::string>(), {}, {}, {}};
+  if (const auto where = m.find("where"); where != m.end()) out.end = where->value("end", ""), out.channel = where->value("channel", "");
+  for (const auto& [name, value] : m.at("parameters").items()) {
+    if (value.is_object()) out.parameters[name] = value.at("value").get<double>();
+    else if (value.is_number()) out.parameters[name] = value.get<double>();
+  }
+  return out;
+}
+
+}  // namespace
+
+rosin::outcome<diagnosed_model> read_diagnosed_model(const std::string& path) {
+  std::ifstream in{path};
+  const json document = json::parse(in, nullptr, false);
+  const auto wrong = [&](const std::string& what) { return rosin::failure{path + ": " + what}; };
+  if (!document.is_object() || !document.contains("missing") || !document.contains("calibration") || !document["calibration"].is_object() || !document["missing"].is_array())
+    return wrong("is no diagnosis (rosin diagnose --json writes one)");
+  diagnosed_model out{path, document.value("verdict", json{}).is_string() ? document.value("verdict", "") : "", {}, {}};
+  try {
+    for (const auto& [name, value] : document["calibration"].items())
+      if (value.is_object() && value.contains("value") && value["value"].is_number()) out.calibration[name] = value["value"].get<double>();
+    for (const json& m : document["missing"]) out.effects.push_back(effect_from(m));
+  } catch (const json::exception& error) {
+    return wrong(std::string{"is no diagnosis: "} + error.what());
+  }
+  if (!out.calibration.contains("fundamental_Hz")) return wrong("calibration has no \"fundamental_Hz\"");
+  return out;
+}
+
+rosin::rig with_model(rosin::rig rig, const diagnosed_model& model) {
+  for (const auto& e : model.effects) {
+    if (e.name != "thermal-friction" && e.name != "elasto-plastic-friction") continue;
+    if (!rig.model) rig.model.emplace();
+    if (!rig.friction) rig.friction.emplace();
+    const auto given = [&](const char* name) { return e.parameters.contains(name) ? std::optional{e.parameters.at(name)} : std::nullopt; };
+    rig.model->friction = e.name == "thermal-friction" ? rosin::friction_model::thermal : rosin::friction_model::elasto_plastic;
+    if (const auto layer = given("layer_m")) rig.friction->layer_thickness_m = layer;
+    if (const auto stiffness = given("bristle_stiffness_N_m")) rig.friction->bristle_stiffness_N_m = stiffness;
+    for (const auto& take : rig.takes)
+      if (const auto area = given("area_per_newton_m2"); area && take.normal_force_N && !rig.friction->contact_radius_m)
+        rig.friction->contact_radius_m = std::sqrt(*area * *take.normal_force_N / std::numbers::pi);
+  }
+  auto how = rig.simulate.value_or(rosin::simulate_section{});
+  double longest_s = 0;
+  for (const auto& take : rig.takes) {
+    const auto recorded = rosin::read_audio_format((std::filesystem::path{rig.folder} / take.file).string());
+    if (!recorded || !(recorded->sample_rate_Hz > 0)) continue;
+    if (!how.rate_Hz) how.rate_Hz = recorded->sample_rate_Hz;
+    longest_s = std::max(longest_s, static_cast<double>(recorded->frames) / recorded->sample_rate_Hz);
+  }
+  if (!how.duration_s && longest_s > 0) how.duration_s = longest_s;
+  rig.simulate = how;
+  return rig;
+}
+
+std::optional<rosin::failure> apply_model(const diagnosed_model& model, const rosin::rig& rig, simulation_plan& plan) {
+  put_string(model, plan);
+  put_takes(model, rig, plan);
+  for (const auto& e : model.effects) {
+    const auto how = can_be_put().find(e.name);
+    if (how == can_be_put().end()) return rosin::failure{model.file + ": \"" + e.name + "\" cannot be simulated"};
+    parameters_of p{e};
+    how->second(e, p, plan);
+    if (!p.missing.empty()) return rosin::failure{model.file + ": \"" + e.name + "\" cannot be simulated: it has no " + p.missing};
+    plan.effects.push_back(e.name);
+  }
+  if (plan.rig.torsion.present()) std::erase(plan.notes, "no [torsion]: the string does not turn");
+  if (model.verdict == "unexplained") plan.notes.push_back(model.file + ": its verdict is \"unexplained\": something is still missing");
+  return std::nullopt;
+}
+
+}  // namespace tool

@@ -1,0 +1,113 @@
+# Terminations that move, the whole way: simulated as declared, found again from the plucks, and reconstructed with.
+. "$ROSIN_SOURCE/tests/tool/common.sh"
+
+cat >rig.toml <<'TOML'
+schema = 1
+title = "a far end that moves"
+
+[string]
+length_m = 0.33
+tension_N = 55
+fundamental_Hz = 440
+bending_stiffness_Nm2 = 6e-5
+quality = 900
+
+[channels]
+near = { index = 0, newtons_per_full_scale = 2, gain_tolerance = 0.05 }
+far = { index = 1, newtons_per_full_scale = 2, gain_tolerance = 0.05 }
+
+[contact]
+position = 0.3
+
+[terminations]
+near = "rigid"
+far = { modes = [ { frequency_Hz = 2400, q = 12, mass_kg = 0.004 } ] }
+
+[torsion]
+speed_ratio = 5.5
+impedance_ratio = 2.8
+q = 25
+
+[friction]
+terms = [ { coefficient = 0.4, speed_m_s = 0.02 } ]
+constant = 0.41
+
+[model]
+physics = ["bending-stiffness", "torsion"]
+friction = "velocity-curve"
+
+[simulate]
+rate_Hz = 48000
+duration_s = 0.1
+noise_N = 1e-4
+seed = 5
+
+[[take]]
+name = "pluck-1"
+kind = "pluck"
+file = "pluck-1.wav"
+force_N = 1.0
+
+[[take]]
+name = "pluck-2"
+kind = "pluck"
+file = "pluck-2.wav"
+force_N = 1.0
+contact_position = 0.18
+
+[[take]]
+name = "bow-1"
+kind = "bow"
+file = "bow-1.wav"
+speed_m_s = 0.15
+normal_force_N = 1.2
+TOML
+
+holds() {
+  awk "BEGIN { exit !($1) }" || { echo "FAILED: $1"; failures=$((failures + 1)); }
+}
+# delta RESULT KEY: of force_N and velocity_m_s against the truth
+delta() { "$tool" compare "$1" made-truth/bow-1.csv --json | sed -n "s/^ *\"$2\": \([0-9.e+-]*\),*$/\1/p" | head -n 2 | paste -s -d ' '; }
+
+expect 0 simulate rig.toml --out made
+says "stick-slip"
+grep -A 6 '"terminations"' made-truth/truth.json | grep -q '"mass_kg": 0.004' || { echo "FAILED: the truth does not tell the termination"; failures=$((failures + 1)); }
+for end in fit rigid; do
+  mkdir $end
+  ln made/*.wav $end
+  sed "s/^far = { modes.*/far = \"$end\"/" made/rig.toml >$end/rig.toml
+done
+
+# the plucks tell frequency, Q and mass: the heaviest share of the far end's admittance is the mode that was declared
+expect 0 fit fit --json fit.json
+read -r frequency quality mass < <(perl -MJSON::PP -e '
+  local $/; open my $f, "<", "fit.json" or die;
+  my @modes = sort { $a->{mass_kg}{value} <=> $b->{mass_kg}{value} } @{decode_json(<$f>)->{terminations}{far}};
+  print join(" ", map { $modes[0]{$_}{value} } "frequency_Hz", "q", "mass_kg"), "\n"')
+holds "sqrt(($frequency / 2400 - 1) ^ 2) < 0.003"
+holds "sqrt(($quality / 12 - 1) ^ 2) < 0.05"
+holds "sqrt(($mass / 0.004 - 1) ^ 2) < 0.05"
+
+# force and velocity under the bow: with the end as declared and as fitted, against an end taken for rigid
+expect 0 reconstruct made --take bow-1 --out declared.csv
+expect 0 reconstruct fit --take bow-1 --calibration fit.json --out fitted.csv
+expect 0 reconstruct rigid --take bow-1 --out rigid.csv
+read -r rigid_N rigid_m_s < <(delta rigid.csv delta)
+for how in declared fitted; do
+  read -r off_N off_m_s < <(delta $how.csv delta)
+  holds "$off_N < 0.007 && $off_N < 0.5 * $rigid_N"
+  holds "$off_m_s < 0.007 && $off_m_s < 0.5 * $rigid_m_s"
+done
+read -r rigid_N rigid_m_s < <(delta rigid.csv delta_after_scale)
+read -r off_N off_m_s < <(delta fitted.csv delta_after_scale)
+holds "$off_N < 0.95 * $rigid_N && $off_m_s < 0.75 * $rigid_m_s"
+
+# what the simulation has no means for
+printf 'frequency_Hz,admittance_re,admittance_im\n100,1e-3,0\n9000,1e-3,0\n' >bridge.csv
+sed 's/^far = { modes.*/far = "bridge.csv"/' rig.toml >table.toml
+expect 2 simulate table.toml --out refused
+says "terminations.far: bridge.csv: a table of admittance cannot be simulated; only rigid terminations and modes can"
+sed 's/^near = { index.*/&\nmoved = { index = 2, quantity = "string-displacement", metres_per_full_scale = 0.01 }/' rig.toml >moved.toml
+expect 2 simulate moved.toml --out refused
+says "channels.moved.quantity: a displacement cannot be simulated where [terminations] move"
+finish
