@@ -26,18 +26,19 @@ struct options {
   std::uint64_t seed = 1;
   int count = 0, effects = 1;
   double strength = 1, noise_dB = 0;
-  bool only_make = false, json = false;
+  bool only_make = false, leave_out = false, json = false;
 };
 
 struct places {
   fs::path rigs, truth, diagnoses;
-  explicit places(const fs::path& root) : rigs{root / "rigs"}, truth{root / "truth"}, diagnoses{root / "diagnoses"} {}
+  places(const fs::path& root, bool leave_out) : rigs{root / "rigs"}, truth{root / "truth"}, diagnoses{root / (leave_out ? "diagnoses-left-out" : "diagnoses")} {}
 };
 
 std::string describe(const options& o) {
   std::string out = "`rosin challenge --seed " + std::to_string(o.seed) + " --count " + std::to_string(o.count) + " --effects " + std::to_string(o.effects);
   if (o.strength != 1) out += " --strength " + rosin::detail::figure(o.strength);
   if (o.noise_dB > 0) out += " --noise-db " + rosin::detail::figure(o.noise_dB);
+  if (o.leave_out) out += " --leave-out";
   return out + (o.effect.empty() ? "`" : " --effect " + o.effect + "`");
 }
 
@@ -58,8 +59,18 @@ std::optional<rosin::failure> make(const options& given, const places& to, std::
   return std::nullopt;
 }
 
+/// Names of what is hidden in a rig, for a diagnosis that does not know it; empty where there is no truth.
+std::vector<std::string> hidden_in(const fs::path& truth) {
+  std::ifstream in{truth};
+  const json t = in ? json::parse(in, nullptr, false) : json{};
+  std::vector<std::string> out;
+  if (t.is_object() && t.contains("effects"))
+    for (const auto& e : t.at("effects")) out.push_back(e.at("effect"));
+  return out;
+}
+
 /// Diagnoses every rig of the folder that has no diagnosis yet; a rig that cannot be diagnosed is named and counts as wrong.
-void diagnose_all(const places& at, const provenance& from, std::size_t shard, std::size_t shards) {
+void diagnose_all(const places& at, bool leave_out, const provenance& from, std::size_t shard, std::size_t shards) {
   std::vector<fs::path> rigs;
   for (const auto& entry : fs::directory_iterator(at.rigs))
     if (fs::exists(entry.path() / "rig.toml")) rigs.push_back(entry.path());
@@ -73,7 +84,7 @@ void diagnose_all(const places& at, const provenance& from, std::size_t shard, s
     json out{{"verdict", "failed"}, {"missing", json::array()}, {"fit", {{"metric", ""}, {"after", nullptr}, {"noise_floor", 0}}}};
     const auto rig = open_rig(rigs[i].string(), own);
     if (!rig) out["error"] = rig.error();
-    else if (const auto found = diagnose(rig->rig, own)) out = to_json(*found, own);
+    else if (const auto found = diagnose(rig->rig, own, leave_out ? hidden_in(at.truth / file.filename()) : std::vector<std::string>{})) out = to_json(*found, own);
     else out["error"] = found.error();
     if (out.contains("error")) std::cerr << "rosin: " << rigs[i].string() << ": " << out["error"].get<std::string>() << '\n';
     out["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -104,13 +115,13 @@ exit_code run(const options& given, const provenance& from) {
   --shard;
   const auto& names = hideable();
   if (!given.effect.empty() && std::find(names.begin(), names.end(), given.effect) == names.end()) return fail("--effect " + given.effect + ": cannot be hidden", given.json);
-  const places at{given.out};
+  const places at{given.out, given.leave_out};
   if (const auto why = make(given, at, shard, shards)) return fail(why->message, given.json);
   if (given.only_make) return exit_code::ok;
-  diagnose_all(at, from, shard, shards);
+  diagnose_all(at, given.leave_out, from, shard, shards);
   const auto scores = score_all(at);
-  const auto page = to_markdown(scores, describe(given));
-  if (const auto why = rosin::write_file((fs::path{given.out} / "challenge.md").string(), rosin::overwrite::allow, [&](std::ostream& o) { o << page; }))
+  const auto page = given.leave_out ? left_out_to_markdown(scores, describe(given)) : to_markdown(scores, describe(given));
+  if (const auto why = rosin::write_file((fs::path{given.out} / (given.leave_out ? "left-out.md" : "challenge.md")).string(), rosin::overwrite::allow, [&](std::ostream& o) { o << page; }))
     return fail(why->message, given.json);
   if (given.json) print(to_json(scores));
   else std::cout << page;
@@ -130,6 +141,7 @@ void add_challenge(CLI::App& app, exit_code& result) {
   command->add_option("--strength", given->strength, "1: as in a laboratory in which one thing went wrong")->check(CLI::Range(0.001, 10.0))->capture_default_str();
   command->add_option("--noise-db", given->noise_dB, "Peak of the first pluck over the noise; 0: drawn, 0.3 to 0.5 mN")->check(CLI::Range(0.0, 120.0))->capture_default_str();
   command->add_option("--shard", given->shard, "The K-th of N parts: every N-th rig")->type_name("K/N")->capture_default_str();
+  command->add_flag("--leave-out", given->leave_out, "Diagnosed by a catalogue that does not know what is hidden: it should say so (left-out.md)");
   command->add_flag("--only-make", given->only_make, "Make the rigs, diagnose nothing");
   add_json_option(*command, given->json);
   command->footer(

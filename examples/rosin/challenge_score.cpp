@@ -98,6 +98,29 @@ json to_json(const std::vector<rig_score>& scores) {
   return out;
 }
 
+std::string left_out_to_markdown(const std::vector<rig_score>& scores, const std::string& how) {
+  std::map<std::string, std::vector<const rig_score*>> by;
+  std::size_t owned_up = 0, misled = 0;
+  for (const auto& s : scores) {
+    by[joined(s.hidden, "nothing")].push_back(&s);
+    owned_up += s.verdict == "unexplained", misled += s.verdict == "explained";
+  }
+  std::string out = how + "\n\nCalled unexplained: " + share(owned_up, scores.size()) + ". Explained by something else: " + share(misled, scores.size()) +
+                    ".\n\n| hidden and not in the catalogue | unexplained | seen as no mismatch | explained instead by |\n|---|---|---|---|\n";
+  for (const auto& [hidden, rigs] : by) {
+    std::size_t unexplained = 0, unseen = 0;
+    std::map<std::string, int> instead;
+    for (const auto* s : rigs) {
+      unexplained += s->verdict == "unexplained", unseen += s->verdict == "no-mismatch";
+      if (s->verdict == "explained") ++instead[joined(s->named, "nothing")];
+    }
+    std::string wrong;
+    for (const auto& [name, count] : instead) wrong += (wrong.empty() ? "" : ", ") + (count > 1 ? std::to_string(count) + " x " : std::string{}) + name;
+    out += "| " + hidden + " | " + share(unexplained, rigs.size()) + " | " + std::to_string(unseen) + " | " + wrong + " |\n";
+  }
+  return out;
+}
+
 std::string to_markdown(const std::vector<rig_score>& scores, const std::string& how) {
   std::map<std::string, std::vector<const rig_score*>> by;
   std::size_t right = 0, placed = 0, with_place = 0, covered = 0, intervals = 0;

@@ -34,5 +34,7 @@ struct rig_score {
 [[nodiscard]] json to_json(const std::vector<rig_score>& scores);
 /// A page in Markdown: per effect named, placed, errors, coverage; what was said instead; every failure by name.
 [[nodiscard]] std::string to_markdown(const std::vector<rig_score>& scores, const std::string& how);
+/// The same where the catalogue did not know what was hidden: how often it said that something is unexplained, and what it said instead.
+[[nodiscard]] std::string left_out_to_markdown(const std::vector<rig_score>& scores, const std::string& how);
 
 }  // namespace tool

@@ -16,6 +16,7 @@ namespace {
 
 struct options {
   std::string rig, json_file, report;
+  std::vector<std::string> without;
   bool force = false, isolability = false;
   double rate_Hz = 128000, noise_N = 3e-4;
 };
@@ -67,7 +68,7 @@ exit_code run(const options& given, provenance from) {
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
   if (!folder->rig.has_both_forces()) return fail(folder->rig.file + ": channels near and far (forces on both terminations) are needed", as_json);
-  const auto found = diagnose(folder->rig, from);
+  const auto found = diagnose(folder->rig, from, given.without);
   if (!found) return fail(found.error(), as_json);
   if (!given.json_file.empty())
     if (const auto why = save_json(given.json_file, to_json(*found, from), given.force)) return fail(why->message);
@@ -86,6 +87,7 @@ void add_diagnose(CLI::App& app, exit_code& result) {
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
   command->add_option("--json", given->json_file, "Write the diagnosis to FILE; without one, or with -, to standard output")->expected(0, 1)->default_str("-")->type_name("FILE");
   command->add_option("--report", given->report, "Write a page with figures (needs gnuplot)")->type_name("FILE.html");
+  command->add_option("--without", given->without, "An effect that the catalogue is not to know (any number): what would be said then?")->type_name("EFFECT");
   auto* isolability = command->add_flag("--isolability", given->isolability, "What the plucks of the rig file can tell apart, recorded or not")->excludes("--report");
   command->add_option("--rate", given->rate_Hz, "With --isolability: sampling rate, Hz")->needs(isolability)->check(CLI::Range(8000.0, 1e6))->capture_default_str();
   command->add_option("--noise", given->noise_N, "With --isolability: noise of a channel, rms, N")->needs(isolability)->check(CLI::PositiveNumber)->capture_default_str();

@@ -35,7 +35,8 @@ struct plucks_to_diagnose {
 };
 [[nodiscard]] rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from);
 
-[[nodiscard]] rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d);
+[[nodiscard]] rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d,
+                                                                        const std::vector<std::string>& without = {});
 
 /// Bowed takes (all, or the one named) with the string, the ends and the sensors that the plucks tell of; what cannot be used is said
 /// in `warnings`. Band: as given, or 0.30 to 0.45 of the sampling rate.

@@ -17,16 +17,19 @@ rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin:
   return out;
 }
 
-rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d) {
+rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d,
+                                                          const std::vector<std::string>& without) {
   const auto plucks = plucks_of(rig, values, from);
   if (!plucks) return rosin::failure{plucks.error()};
   d.warnings.insert(d.warnings.end(), plucks->warnings.begin(), plucks->warnings.end());
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;
   const double rate = plucks->takes.front().rate_Hz;
   const std::size_t count = plucks->takes.size();
-  return rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, [=, physics = physics_of(rig)](const rosin::pluck_fit_result& fit) {
+  std::vector<std::string> known = physics_of(rig);
+  known.insert(known.end(), without.begin(), without.end());
+  return rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, [=](const rosin::pluck_fit_result& fit) {
     const rosin::string_facts facts{fit.value[rosin::pluck_layout::fundamental], rate, fit.limits.stop_Hz, impedance, length, count};
-    return rosin::catalogue_without(physics, facts, fit.limits);
+    return rosin::catalogue_without(known, facts, fit.limits);
   });
 }
 

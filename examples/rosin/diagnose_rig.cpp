@@ -164,8 +164,9 @@ bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d)
 }
 
 /// One effect of the contact after the other; true if the contact is as the model then has it.
-bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, rig_diagnosis& d) {
+bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const std::vector<std::string>& without, rig_diagnosis& d) {
   rosin::contact_model model = declared_contact(rig);
+  model.included.insert(model.included.end(), without.begin(), without.end());
   double gained = 0;
   for (int round = 0; round < most_contact_effects; ++round) {
     rosin::contact_findings found = contact_of(rig, strokes, plain_string, model);
@@ -186,12 +187,12 @@ void rank(rig_diagnosis& d) {
 
 }  // namespace
 
-rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from) {
+rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without) {
   rig_diagnosis d;
   d.title = rig.title.value_or(rig.file);
   const rosin::rig_values values = rosin::values_of(rig);
   d.assumed = values.assumed;
-  auto plucks = diagnose_plucks_of(rig, values, from, d);
+  auto plucks = diagnose_plucks_of(rig, values, from, d, without);
   if (!plucks) return rosin::failure{plucks.error()};
   const rosin::pluck_diagnosis& p = *plucks;
   take_over(p, values, d);
@@ -205,11 +206,11 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from) 
     d.assumed.emplace_back("the strokes were not examined: the contact cannot be seen past what the plucks leave unexplained");
   if (!strokes.empty()) {
     const rosin::tension_drift drift = drift_of(strokes, p);
-    if (drifted(drift)) {
+    if (drifted(drift) && std::find(without.begin(), without.end(), "tension-drift") == without.end()) {
       add_drift(drift, d);
       strokes = reconstruct_strokes(rig, values, p, drift.relative, from, d.warnings);
     }
-    contact_open = !examine_contact(rig, strokes, plain_string, d) && d.missing.empty();
+    contact_open = !examine_contact(rig, strokes, plain_string, without, d) && d.missing.empty();
   }
   rank(d);
   d.verdict = !p.explained || contact_open ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";

@@ -71,7 +71,8 @@ struct rig_diagnosis {
   std::vector<std::string> assumed, warnings;
 };
 
-[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from);
+/// `without`: effects that the catalogue is not to know, by name.
+[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {});
 /// What an effect means, with its values.
 [[nodiscard]] std::string statement_of(const missing_effect& m);
 /// A parameter of the fit in the names and units of the format; the doubt in nominal values joins the standard deviation.

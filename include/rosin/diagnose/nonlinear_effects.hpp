@@ -28,31 +28,23 @@ inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel)
   return e;
 }
 
-/// Forces on both ends of a plucked string whose tension follows its length; the first value is that at the release.
+/// Forces on both ends of a plucked string whose tension follows its length.
 class stretching_pluck {
 public:
-  /// stretch: EA / (4 T), dimensionless with k q in units of slope.
-  stretching_pluck(const ringing_string& string, double position, double force_over_tension, const band& limits, int most, double step_s)
-      : force_{force_over_tension} {
+  /// Partials to `most` below the stop frequency, seen through the band.
+  stretching_pluck(const ringing_string& string, double position, double force_over_tension, const band& limits, int most) : force_{force_over_tension} {
     for (int n = 1; n <= most && string.partial_Hz(n) < limits.stop_Hz; ++n) {
       const double f = string.partial_Hz(n), w = 2 * std::numbers::pi * f, half = string.loss.inverse_q(f) / 2;
       const double c_k = 2 * std::numbers::pi * string.fundamental_Hz * n, b = string.inharmonicity * n * n;
-      mode m;
-      // slope amplitude k q of the held string: 2 F sin(k x) / (L k (T + B k^2)) -> (2 / (n pi)) (F/T) sin / (1 + b)
-      m.held = 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) / (1 + b);
-      m.kick = c_k * c_k;
-      m.stiff = 1 + b;
-      m.weight = band_weight(limits, {-w * half, w}).real();
-      m.sign = n % 2 ? 1.0 : -1.0;
-      const double rate = w * half, turn = w * std::sqrt(1 - half * half), h = step_s / 2, decay = std::exp(-rate * h);
-      const double s = std::sin(turn * h) / turn, co = std::cos(turn * h);
-      m.qq = decay * (co + rate * s), m.qp = decay * s, m.pq = -decay * w * w * s, m.pp = decay * (co - rate * s);
-      modes_.push_back(m);
+      // Slope amplitude k q of the held string: 2 F sin(k x) / (L k (T + B k^2)) -> (2 / (n pi)) (F/T) sin / (1 + b)
+      modes_.push_back({2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) / (1 + b), c_k * c_k, 1 + b, band_weight(limits, {-w * half, w}).real(),
+                        n % 2 ? 1.0 : -1.0, w * half, w * std::sqrt(1 - half * half), w * w});
     }
   }
 
-  /// Force on {near, far} relative to the pluck's own force, every `every` steps, `count` values.
-  [[nodiscard]] std::array<std::vector<double>, 2> run(double stretch, double step_s, std::size_t every, std::size_t count) const {
+  /// Force on {near, far} relative to the pluck's own force: `count` values, the first `first_s` after the release (in [0, sample_s]),
+  /// then every sample_s, each reached in `steps` steps. stretch: EA / (4 T), dimensionless with k q in units of slope.
+  [[nodiscard]] std::array<std::vector<double>, 2> run(double stretch, double first_s, double sample_s, std::size_t steps, std::size_t count) const {
     std::vector<double> q(modes_.size()), p(modes_.size(), 0.0);
     double e = 0;
     for (int i = 0; i < 8; ++i) {  // the held string is stretched as well
@@ -64,26 +56,41 @@ public:
       e = stretch * sum;
     }
     std::array<std::vector<double>, 2> out{std::vector<double>(count), std::vector<double>(count)};
+    const double first_step_s = first_s / static_cast<double>(steps), step_s = sample_s / static_cast<double>(steps);
+    const std::vector<half_turn> first_turns = half_turns(first_step_s), turns = half_turns(step_s);
+    for (std::size_t k = 0; k < steps; ++k) step(q, p, first_turns, stretch, first_step_s);
     for (std::size_t i = 0; i < count; ++i) {
       double even = 0, odd = 0, sum = 0;
       for (std::size_t n = 0; n < q.size(); ++n) sum += q[n] * q[n];
       e = stretch * sum;
       for (std::size_t n = 0; n < q.size(); ++n) (modes_[n].sign > 0 ? odd : even) += modes_[n].weight * (modes_[n].stiff + e) * q[n];
       out[0][i] = (odd + even) / force_, out[1][i] = (odd - even) / force_;
-      for (std::size_t k = 0; k < every; ++k) step(q, p, stretch, step_s);
+      for (std::size_t k = 0; k < steps; ++k) step(q, p, turns, stretch, step_s);
     }
     return out;
   }
 
 private:
   struct mode {
-    double held, kick, stiff, weight, sign, qq, qp, pq, pp;
+    double held, kick, stiff, weight, sign, decay_1_s, turn_rad_s, square;
+  };
+  struct half_turn {
+    double qq, qp, pq, pp;
   };
 
-  void step(std::vector<double>& q, std::vector<double>& p, double stretch, double step_s) const {
+  [[nodiscard]] std::vector<half_turn> half_turns(double step_s) const {
+    std::vector<half_turn> out;
+    for (const mode& m : modes_) {
+      const double h = step_s / 2, decay = std::exp(-m.decay_1_s * h), s = std::sin(m.turn_rad_s * h) / m.turn_rad_s, c = std::cos(m.turn_rad_s * h);
+      out.push_back({decay * (c + m.decay_1_s * s), decay * s, -decay * m.square * s, decay * (c - m.decay_1_s * s)});
+    }
+    return out;
+  }
+
+  void step(std::vector<double>& q, std::vector<double>& p, const std::vector<half_turn>& turns, double stretch, double step_s) const {
     double sum = 0;
     for (std::size_t n = 0; n < q.size(); ++n) {
-      const mode& m = modes_[n];
+      const half_turn& m = turns[n];
       const double a = m.qq * q[n] + m.qp * p[n];
       p[n] = m.pq * q[n] + m.pp * p[n];
       q[n] = a;
@@ -91,8 +98,8 @@ private:
     }
     const double e = stretch * sum * step_s;
     for (std::size_t n = 0; n < q.size(); ++n) {
-      const mode& m = modes_[n];
-      p[n] -= e * m.kick * q[n];
+      const half_turn& m = turns[n];
+      p[n] -= e * modes_[n].kick * q[n];
       const double a = m.qq * q[n] + m.qp * p[n];
       p[n] = m.pq * q[n] + m.pp * p[n];
       q[n] = a;
@@ -103,32 +110,54 @@ private:
   std::vector<mode> modes_;
 };
 
-/// Large motion stretches the string. Needs the tension in newtons.
+/// What the tension of a plucked string is higher by in the mean over the first periods, relatively: half of e is there in the mean, as half
+/// of the energy is.
+[[nodiscard]] inline double mean_stretch(const ringing_string& string, double position, double force_over_tension, double stretch, double periods) {
+  double sum = 0;
+  for (int n = 1; n <= 200; ++n) {
+    const double q = force_over_tension * 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) / (1 + string.inharmonicity * n * n);
+    const double lost = 2 * std::numbers::pi * n * periods * std::max(0.0, string.loss.inverse_q(n * string.fundamental_Hz));
+    sum += 0.5 * q * q * (lost > 1e-6 ? -std::expm1(-lost) / lost : 1.0);
+  }
+  return stretch * sum;
+}
+
+/// The string with that much more tension.
+[[nodiscard]] inline ringing_string tightened(ringing_string string, double relative) {
+  string.fundamental_Hz *= std::sqrt(1 + relative);
+  string.inharmonicity /= 1 + relative;
+  return string;
+}
+
+/// Large motion stretches the string. Needs the tension in newtons. The string that rings in the mean is part of the scene; what is
+/// taken out is by how much the stretched one differs from it.
 inline pluck_effect tension_modulation_effect(const string_facts& f, const band& limits) {
-  pluck_effect e{"tension-modulation", -1, false, {{"axial_stiffness_N", 0, 3e6, 20, false, -1, true}}, {{0}}, -3, {}};
-  e.horizon_periods = 10;
-  const double tension = f.impedance_Ns_m * 2 * f.length_m * f.fundamental_Hz, horizon_s = e.horizon_periods / f.fundamental_Hz;
+  pluck_effect e{"tension-modulation", -1, false, {{"axial_stiffness_N", 0, 3e6, 20}}, {{0}}, -3, {}};
+  constexpr double most_periods = 10;
+  e.horizon_periods = most_periods;
+  const double tension = f.impedance_Ns_m * 2 * f.length_m * f.fundamental_Hz, horizon_s = most_periods / f.fundamental_Hz;
+  const auto raised = [=](const pluck_layout& layout, const Eigen::VectorXd& v, std::size_t t, double axial_N) {
+    return mean_stretch(layout.string(v), v[layout.position(t)], std::exp(v[layout.at(t, pluck_layout::strength)]) / tension, axial_N / (4 * tension), 0.6 * most_periods);
+  };
+  e.retune = [=](pluck_scene& s, const pluck_layout& layout, const Eigen::VectorXd& v, std::size_t t, double axial_N) {
+    s.string = tightened(s.string, raised(layout, v, t, axial_N));
+  };
   e.undo = [=](std::vector<pluck_take>& takes, const pluck_layout& layout, const Eigen::VectorXd& v, double axial_N) {
     for (std::size_t t = 0; t < takes.size(); ++t) {
-      const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)], newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
-      constexpr std::size_t finer = 4;
-      const double step_s = 1 / (rate * static_cast<double>(finer));
-      const auto count = static_cast<std::size_t>(horizon_s * rate * 1.1) + 8;
-      const stretching_pluck string(layout.string(v), v[layout.position(t)], newtons / tension, limits, 400, step_s);
-      const auto with = string.run(axial_N / (4 * tension), step_s, finer, count), without = string.run(0, step_s, finer, count);
+      const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate, newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
+      const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(released)));  // on the record's own samples: nothing is interpolated
+      if (first >= takes[t].force_N[0].size()) continue;
+      const std::size_t count = std::min(takes[t].force_N[0].size() - first, static_cast<std::size_t>(horizon_s * rate * 1.1) + 8);
+      const band all{limits.stop_Hz, limits.stop_Hz};
+      const ringing_string slack = layout.string(v), mean = tightened(slack, raised(layout, v, t, axial_N));
+      const double wait_s = std::min(1.0, static_cast<double>(first) - released) / rate;
+      const auto run = [&](const ringing_string& string, double stretch) {
+        return stretching_pluck(string, v[layout.position(t)], newtons / tension, all, 400).run(stretch, wait_s, 1 / rate, 4, count);
+      };
+      const auto with = run(slack, axial_N / (4 * tension)), without = run(mean, 0);
       for (std::size_t c = 0; c < 2; ++c) {
-        std::vector<double>& x = takes[t].force_N[c];
         const double gain = newtons * std::exp(v[pluck_layout::gain_near + static_cast<int>(c)]);
-        for (auto i = static_cast<std::size_t>(std::ceil(released * rate)); i < x.size(); ++i) {
-          const double at = (static_cast<double>(i) - released * rate);
-          const auto j = static_cast<std::size_t>(at);
-          if (j + 3 > count) break;
-          const double u = at - static_cast<double>(j);
-          const auto change = [&](std::size_t k) { return with[c][k] - without[c][k]; };
-          // Cubic between the values: the change is small and smooth.
-          const double y0 = change(j > 0 ? j - 1 : j), y1 = change(j), y2 = change(j + 1), y3 = change(j + 2);
-          x[i] -= gain * (y1 + 0.5 * u * (y2 - y0 + u * (2 * y0 - 5 * y1 + 4 * y2 - y3 + u * (3 * (y1 - y2) + y3 - y0))));
-        }
+        for (std::size_t i = 0; i < count; ++i) takes[t].force_N[c][first + i] -= gain * (with[c][i] - without[c][i]);
       }
     }
   };

@@ -61,22 +61,6 @@ inline int free_parameters(const scene_fit& f) {
   return k;
 }
 
-/// The residual of a fit in the ringing part of a take.
-inline std::array<Eigen::VectorXd, 2> residual_of(const line_problem<scene_plucks>& p, const Eigen::VectorXd& v, std::size_t take) {
-  const auto& s = p.part(take, 1);
-  std::array<Eigen::VectorXd, 2> r = s.data;
-  const std::vector<damped_line> lines = p.lines(v, take, 1);
-  line_runner(lines, 1 / p.rate_Hz(take))(s.count(), [&](std::size_t begin, std::size_t length, const auto& re, const auto& im) {
-    const auto at = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(length);
-    for (std::size_t n = 0; n < lines.size(); ++n)
-      for (std::size_t c = 0; c < 2; ++c) {
-        const auto a = lines[n].residue[c];
-        r[c].segment(at, rows) -= a.real() * re.col(static_cast<Eigen::Index>(n)).head(rows) - a.imag() * im.col(static_cast<Eigen::Index>(n)).head(rows);
-      }
-  });
-  return r;
-}
-
 /// Narrowest band around the strongest bin that holds four fifths of a residual's power, by a plain periodogram of at most 4096 samples.
 inline std::array<double, 2> band_of(const Eigen::VectorXd& r, double rate_Hz) {
   const auto n = static_cast<int>(std::min<Eigen::Index>(r.size(), 4096));

@@ -42,9 +42,11 @@ struct pluck_effect {
   std::vector<std::vector<double>> starts; ///< physical values
   int strength = 0;                        ///< index of the parameter that the effect vanishes with; -1: none does
   std::function<void(pluck_scene&, const double* values, int take)> apply;
-  /// What is not linear works on the recordings: takes out of them what the effect (one parameter, from 0 on) has put in. Its
-  /// parameter is found by score steps, the rest of the fit in between.
+  /// What is not linear works on the recordings: takes out of them what the effect (one parameter, from 0 on) has put in, by the
+  /// fit so far.
   std::function<void(std::vector<pluck_take>&, const pluck_layout&, const Eigen::VectorXd& v, double value)> undo{};
+  /// With it: the linear string that comes nearest in a take, so that what is taken out stays small.
+  std::function<void(pluck_scene&, const pluck_layout&, const Eigen::VectorXd& v, std::size_t take, double value)> retune{};
   double horizon_periods = 1e9;  ///< the model of the effect holds for so long
 
   [[nodiscard]] std::string id() const {

@@ -60,20 +60,39 @@ struct scene_data {
 
 namespace detail {
 
-/// One score step for every effect that works on the recordings; returns the largest step in standard deviations.
+/// The residual of a fit in the ringing part of a take.
+inline std::array<Eigen::VectorXd, 2> residual_of(const line_problem<scene_plucks>& p, const Eigen::VectorXd& v, std::size_t take) {
+  const auto& s = p.part(take, 1);
+  std::array<Eigen::VectorXd, 2> r = s.data;
+  const std::vector<damped_line> lines = p.lines(v, take, 1);
+  line_runner(lines, 1 / p.rate_Hz(take))(s.count(), [&](std::size_t begin, std::size_t length, const auto& re, const auto& im) {
+    const auto at = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(length);
+    for (std::size_t n = 0; n < lines.size(); ++n)
+      for (std::size_t c = 0; c < 2; ++c) {
+        const auto a = lines[n].residue[c];
+        r[c].segment(at, rows) -= a.real() * re.col(static_cast<Eigen::Index>(n)).head(rows) - a.imag() * im.col(static_cast<Eigen::Index>(n)).head(rows);
+      }
+  });
+  return r;
+}
+
+/// One score step for every effect that shows in the recordings alone; returns the largest step in standard deviations.
 inline double score_steps(const scene_data& data, scene_fit& fit, const fit_stage& stage, std::array<double, 2> noise) {
   double largest = 0;
   Eigen::Index at = data.layout.size();
   for (const pluck_effect& e : fit.effects) {
-    if (e.undo) {
+    if (e.parameters[0].by_score) {
       const line_problem<scene_plucks> here = data.problem(fit.effects, fit.value, stage, noise);
       Eigen::VectorXd moved = fit.value;
       const double h = e.parameters[0].step;
       moved[at] += h;
       const line_problem<scene_plucks> there = data.problem(fit.effects, moved, stage, noise);
       std::vector<std::array<Eigen::VectorXd, 2>> columns(here.takes());
-      for (std::size_t t = 0; t < here.takes(); ++t)
-        for (std::size_t c = 0; c < 2; ++c) columns[t][c] = (here.part(t, 1).data[c] - there.part(t, 1).data[c]) / h;
+      for (std::size_t t = 0; t < here.takes(); ++t) {
+        columns[t] = residual_of(here, fit.value, t);
+        const auto changed = residual_of(there, moved, t);
+        for (std::size_t c = 0; c < 2; ++c) columns[t][c] = (columns[t][c] - changed[c]) / h;
+      }
       const auto found = pluck_score(here, fit.value).of_columns(columns);
       fit.value[at] = std::clamp(fit.value[at] + found.mix, e.parameters[0].low, e.parameters[0].high);
       fit.score_sd.push_back(found.sd);
@@ -93,7 +112,7 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
   Eigen::Index at = data.layout.size();
   std::size_t i = 0;
   for (const pluck_effect& e : fit.effects) {
-    if (e.undo && i < fit.score_sd.size()) fit.covariance(at, at) = fit.quality.inflation() * std::pow(fit.score_sd[i++], 2);
+    if (e.parameters[0].by_score && i < fit.score_sd.size()) fit.covariance(at, at) = fit.quality.inflation() * std::pow(fit.score_sd[i++], 2);
     at += static_cast<Eigen::Index>(e.parameters.size());
   }
   fit.sd = fit.covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -105,18 +124,19 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
 [[nodiscard]] inline scene_fit fit_scene(const scene_data& data, const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value,
                                          std::vector<fit_stage> stages, std::array<double, 2> noise) {
   scene_fit fit{effects, value, {}, {}, {}, {}, 0, 0, false};
-  bool by_score = false;
+  bool again = false;  // what is taken out of the recordings depends on the fit
   for (const pluck_effect& e : effects) {
-    by_score = by_score || e.undo;
+    again = again || e.undo;
     for (fit_stage& s : stages) s.periods = std::min(s.periods, e.horizon_periods);
   }
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const bool last = i + 1 == stages.size();
-    for (int round = 0; round < (by_score ? (last ? 8 : 2) : 1); ++round) {
+    for (int round = 0; round < (again ? (last ? 8 : 2) : 1); ++round) {
       const line_problem<scene_plucks> problem = data.problem(effects, fit.value, stages[i], noise);
+      const int before = fit.iterations;
       fit.converged = detail::descend(problem, problem.model(), value, fit.value, last ? 25 : 10, last ? 1e-2 : 1.0, fit.iterations);
       fit.score_sd.clear();
-      if (by_score && detail::score_steps(data, fit, stages[i], noise) < 0.05) break;
+      if (again && detail::score_steps(data, fit, stages[i], noise) < 0.05 && fit.iterations <= before + 1) break;
     }
     fit.horizon_periods = stages[i].periods;
   }

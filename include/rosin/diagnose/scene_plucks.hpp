@@ -107,6 +107,7 @@ public:
       std::vector<double> values;
       for (const auto& p : e.parameters) values.push_back(to_physical(p, v[at++]));
       if (e.apply) e.apply(s, values.data(), take);
+      if (e.retune) e.retune(s, *this, v, static_cast<std::size_t>(take), values.front());
     }
     return s;
   }
@@ -117,7 +118,7 @@ public:
     const double position_now = v[position(take)], released = release_s(v, take), newtons = std::exp(v[at(take, strength)]);
     std::vector<damped_line> out;
     if (part == 1) {
-      out = s.plain_string() ? scene_lines(s, position_now, limits, most, {}) : recorded_lines(strings_->lines(key(v), s, position_now, limits, most), s, position_now, limits);
+      out = s.plain_string() ? scene_lines(s, position_now, limits, most, {}) : recorded_lines(strings_->lines(key(v, s), s, position_now, limits, most), s, position_now, limits);
       for (damped_line& line : out) {
         const std::complex<double> turned = newtons * std::exp(line.pole * (begin_s - released));
         for (auto& r : line.residue) r *= turned;
@@ -140,9 +141,9 @@ public:
 
 private:
   /// What the poles depend on.
-  [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v) const {
-    Eigen::VectorXd k(gain_near + v.size() - plain_size());
-    k << v.head(gain_near), v.tail(v.size() - plain_size());
+  [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v, const pluck_scene& s) const {
+    Eigen::VectorXd k(gain_near + v.size() - plain_size() + 1);
+    k << v.head(gain_near), v.tail(v.size() - plain_size()), s.string.fundamental_Hz;
     return k;
   }
 
