@@ -223,6 +223,93 @@ touch blocked
 expect 2 simulate rig.toml --out blocked
 says "blocked"
 
+# with the model of a diagnosis: a bead is hidden, found by rosin diagnose, and put in again
+cat >plain.toml <<'TOML'
+schema = 1
+string = { length_m = 0.33, tension_N = 55, fundamental_Hz = 440, quality = 900 }
+contact = { position = 0.3 }
+simulate = { rate_Hz = 16000, duration_s = 0.06, seed = 4 }
+take = [ { name = "pluck-1", kind = "pluck", file = "pluck-1.wav", force_N = 1.0 } ]
+[channels]
+near = { index = 0, newtons_per_full_scale = 2, gain_tolerance = 0.05 }
+far = { index = 1, newtons_per_full_scale = 2, gain_tolerance = 0.05 }
+TOML
+cat >bead.json <<'JSON'
+{ "verdict": "explained", "calibration": { "fundamental_Hz": { "value": 440.3 } },
+  "missing": [ { "effect": "point-mass", "where": { "position": 0.62 },
+                 "parameters": { "position": { "value": 0.62 }, "mass_kg": { "value": 4e-6 } } } ] }
+JSON
+# residual MADE: rms of what two recordings of pluck-1 differ by / rms of the first, the larger of two channels
+residual() { paste <(samples bead/pluck-1.wav) <(samples "$1/pluck-1.wav") | awk '
+  { a += ($1 - $3) ^ 2; b += ($2 - $4) ^ 2; aa += $1 ^ 2; bb += $2 ^ 2 } END { a /= aa; b /= bb; print sqrt(a > b ? a : b) }'; }
+expect 0 simulate plain.toml --model bead.json --out bead
+says "with: point-mass"
+grep -q '"point-mass"' bead-truth/truth.json || { echo "FAILED: the truth does not tell the bead"; failures=$((failures + 1)); }
+grep -q "bead\|point-mass\|0.62" bead/rig.toml && { echo "FAILED: the rig file tells the bead"; failures=$((failures + 1)); }
+expect 0 diagnose bead --json found.json
+says "point-mass"
+expect 0 simulate bead --model found.json --out again-with-bead   # rate and duration: those of the recording
+says "0.06 s at 16000 Hz" "with: point-mass"
+perl -MJSON::PP -e 'local $/; my $d = decode_json(<STDIN>); $d->{missing} = []; print encode_json($d)' <found.json >none.json
+expect 0 simulate bead --model none.json --out without
+is_silent_about "with:"
+with=$(residual again-with-bead) without=$(residual without)
+holds "$with < 0.005 && $without > 0.3"
+
+# every effect that can be simulated, at once (one law of friction at a time); what cannot be is refused by its name
+cat >>plain.toml <<'TOML'
+[torsion]
+speed_ratio = 5
+impedance_ratio = 3
+q = 15
+TOML
+sed -i 's/^\(take = .*\) ]$/\1, { name = "bow-1", kind = "bow", file = "bow-1.wav", speed_m_s = 0.2, normal_force_N = 0.5 } ]/' plain.toml
+cat >all.json <<'JSON'
+{ "verdict": "unexplained", "calibration": { "fundamental_Hz": { "value": 440.3 }, "ln_gain_near": { "value": 0.01 } }, "missing": [
+  { "effect": "bending-stiffness", "parameters": { "bending_stiffness_Nm2": { "value": 5e-5 } } },
+  { "effect": "frequency-dependent-loss", "parameters": { "loss_internal_s": { "value": 2e-7 } } },
+  { "effect": "air-loss", "parameters": { "loss_air_sqrt_Hz": { "value": 1e-2 } } },
+  { "effect": "tension-modulation", "parameters": { "axial_stiffness_N": { "value": 10000 } } },
+  { "effect": "second-polarization", "parameters": { "detuning": { "value": 3e-3 }, "coupling": { "value": 0.05 } } },
+  { "effect": "point-mass", "parameters": { "position": { "value": 0.62 }, "mass_kg": { "value": 2e-6 } } },
+  { "effect": "point-damper", "parameters": { "position": { "value": 0.8 }, "resistance_Ns_m": { "value": 1e-3 } } },
+  { "effect": "support-resonance", "where": { "end": "far" }, "parameters": { "frequency_Hz": { "value": 3000 }, "q": { "value": 15 }, "mass_kg": { "value": 0.004 } } },
+  { "effect": "ac-coupling", "parameters": { "cutoff_Hz": { "value": 5 } } },
+  { "effect": "sensor-resonance", "where": { "channel": "near" }, "parameters": { "frequency_Hz": { "value": 6000 }, "q": { "value": 12 } } },
+  { "effect": "channel-skew", "parameters": { "skew_s": { "value": 2e-6 } } },
+  { "effect": "channel-crosstalk", "parameters": { "fraction": { "value": 0.02 } } },
+  { "effect": "sensor-nonlinearity", "where": { "channel": "far" }, "parameters": { "quadratic_per_N": { "value": 0.03 } } },
+  { "effect": "mains-hum", "parameters": { "frequency_Hz": { "value": 50 }, "amplitude_N": { "value": 0.01 } } },
+  { "effect": "slow-release", "parameters": { "duration_s": { "value": 4e-5 } } },
+  { "effect": "torsion", "parameters": { "speed_ratio": { "value": 6 }, "impedance_ratio": { "value": 3 }, "q": { "value": 15 } } },
+  { "effect": "tension-drift", "parameters": { "relative": { "value": 0.01 } } },
+  { "effect": "rod-resonance", "parameters": { "frequency_Hz": { "value": 1500 }, "q": { "value": 10 }, "mass_kg": { "value": 0.003 } } },
+  { "effect": "finite-contact-width", "parameters": { "width_m": { "value": 0.004 } } },
+  { "effect": "speed-ripple", "parameters": { "frequency_Hz": { "value": 120 }, "relative": { "value": 0.03 } } },
+  { "effect": "elasto-plastic-friction", "parameters": { "bristle_stiffness_N_m": { "value": 20000 } } } ] }
+JSON
+expect 0 simulate plain.toml --model all.json --out all
+says "with: elasto-plastic-friction" 'all.json: its verdict is "unexplained"' "mains-hum: a diagnosis tells neither phase" "speed-ripple: a diagnosis tells no phase"
+same "$(grep -c '^with: ' out.txt)" 21
+same "$(key all-truth/truth.json bristle_stiffness_N_m)" 20000.0
+same "$(key all-truth/truth.json speed_ratio)" 6.0
+expect 0 check all
+says "the sensor seems to be AC coupled"
+is_silent_about "clipped"
+sed 's/point-mass/gremlins/' bead.json >changed.json
+expect 2 simulate plain.toml --model changed.json --out refused
+says 'changed.json: "gremlins" cannot be simulated'
+sed 's/mass_kg/mass/' bead.json >changed.json
+expect 2 simulate plain.toml --model changed.json --out refused
+says '"point-mass" cannot be simulated: it has no mass_kg'
+sed 's/fundamental_Hz/pitch/' bead.json >changed.json
+expect 2 simulate plain.toml --model changed.json --out refused
+says 'calibration has no "fundamental_Hz"'
+expect 2 simulate plain.toml --model plain.toml --out refused
+says "plain.toml: is no diagnosis"
+expect 2 simulate plain.toml --model nothing.json --out refused
+says "nothing.json"
+
 # clipping and a string that does not slip are said
 sed 's/1.65/0.5/; s/normal_force_N = 0.3/normal_force_N = 30/' rig.toml >loud.toml
 expect 0 simulate loud.toml --out loud
