@@ -4,10 +4,11 @@
 // partial keeps its pitch. A real string is stretched by its own motion, so all partials are sharp together, in proportion
 // to the energy that is left:
 //
-//     pitch(t) = base + K P(t),     P: power of the pickup's partials, t: since the pluck
+//     pitch(t) = base + sum_n K_n P_n(t),     P_n: power of partial n at the pickup
 //
-// K, one number for a string, is fitted to the soft plucks alone. The hard plucks are then foretold: of them only the base,
-// from 2.5 s on, is used, because no peg stands still between takes.
+// A pickup hears each partial by another factor, so each K_n >= 0 is a number of its own, the same for all takes of a string. They
+// are fitted to the soft plucks alone. The hard plucks are then foretold: of them only the base, from 2.5 s on, is used, because
+// no peg stands still between takes. One K for all of them, "power alone", is told beside it.
 //
 //     02_glide_of_hard_plucks NOMINAL_HZ FIGURE.svg SOFT.flac... -- HARD.flac...
 //
@@ -23,8 +24,12 @@ namespace {
 constexpr int first_partial = 2, last_partial = 6;  // below, the pickup hears too little; above, they die too soon
 constexpr double hop_s = 0.05, late_s = 2.5, heard_dB = 25;
 
+constexpr int stretching = 6;  // partials whose motion stretches the string
+using powers = Eigen::Matrix<double, stretching, 1>;
+
 struct moment {
-  double time_s, power, cents, weight;
+  double time_s, cents, weight;
+  powers power;
   std::size_t partial;
 };
 
@@ -40,44 +45,56 @@ std::vector<moment> pitch_track(const std::string& file, double nominal_Hz) {
   std::vector<moment> track;
   for (double t = 0.1; t + hop_s < static_cast<double>(heard.samples.size()) / heard.rate_Hz - begin - 0.3; t += hop_s) {
     std::array<double, 12> power{}, pitch{};
-    double all = 0, loudest = 0;
+    double loudest = 0;
     for (std::size_t i = 0; i < band.size(); ++i) {
       const auto& z = band[i].samples;
       const auto a = static_cast<std::size_t>((begin + t - hop_s) * band[i].rate_Hz), b = static_cast<std::size_t>((begin + t + hop_s) * band[i].rate_Hz);
       std::complex<double> turn = 0;
       for (std::size_t j = a; j < b; ++j) turn += z[j + 1] * std::conj(z[j]), power[i] += std::norm(z[j]) / static_cast<double>(b - a);
       pitch[i] = band[i].centre_Hz + std::arg(turn) * band[i].rate_Hz / rosin::detail::full_turn;
-      all += power[i];
       loudest = std::max(loudest, power[i]);
     }
     for (std::size_t i = first_partial - 1; i < last_partial; ++i)
       if (power[i] > loudest * std::pow(10, -heard_dB / 10))
-        track.push_back({t, all, 1200 * std::log2(pitch[i] / nominal_Hz / static_cast<double>(i + 1)), std::sqrt(power[i] / loudest), i});
+        track.push_back({t, 1200 * std::log2(pitch[i] / nominal_Hz / static_cast<double>(i + 1)), std::sqrt(power[i] / loudest), Eigen::Map<const powers>(power.data()), i});
   }
   return track;
 }
 
-/// Takes the base out of each partial: its mean over `counted`, of pitch and (for the regression) of power.
+/// Means over what is counted, for each partial by itself, and the sums of least squares about them.
 struct centred {
-  double slope_up = 0, slope_down = 0;  ///< sums of least squares for K
-  std::array<double, last_partial> base_cents{}, base_power{};
+  std::array<double, last_partial> cents{};
+  std::array<powers, last_partial> power;
+  Eigen::Matrix<double, stretching, stretching> normal = Eigen::Matrix<double, stretching, stretching>::Zero();
+  powers right = powers::Zero();
 };
 
 template <class Counted>
 centred centre(const std::vector<moment>& track, Counted counted) {
   centred c;
+  c.power.fill(powers::Zero());
   std::array<double, last_partial> weight{};
   for (const moment& m : track)
-    if (counted(m)) c.base_cents[m.partial] += m.weight * m.cents, c.base_power[m.partial] += m.weight * m.power, weight[m.partial] += m.weight;
-  for (std::size_t i = 0; i < weight.size(); ++i) c.base_cents[i] /= weight[i], c.base_power[i] /= weight[i];  // NaN: never heard there
+    if (counted(m)) c.cents[m.partial] += m.weight * m.cents, c.power[m.partial] += m.weight * m.power, weight[m.partial] += m.weight;
+  for (std::size_t i = 0; i < weight.size(); ++i) c.cents[i] /= weight[i], c.power[i] /= weight[i];  // NaN: never heard there
   for (const moment& m : track)
     if (counted(m)) {
-      const double dp = m.power - c.base_power[m.partial];
-      c.slope_up += m.weight * dp * (m.cents - c.base_cents[m.partial]);
-      c.slope_down += m.weight * dp * dp;
+      const powers dp = m.power - c.power[m.partial];
+      c.normal += m.weight * dp * dp.transpose();
+      c.right += m.weight * (m.cents - c.cents[m.partial]) * dp;
     }
   return c;
 }
+
+/// Least squares with no K below zero, one after the other until nothing moves.
+powers not_negative(const centred& sums) {
+  powers K = powers::Zero();
+  for (int round = 0; round < 20000; ++round)
+    for (Eigen::Index i = 0; i < stretching; ++i) K[i] = std::max(0.0, K[i] + (sums.right[i] - sums.normal.row(i).dot(K)) / sums.normal(i, i));
+  return K;
+}
+
+powers all_alike(const centred& sums) { return powers::Constant(sums.right.sum() / sums.normal.sum()); }
 
 }  // namespace
 
@@ -89,35 +106,39 @@ int main(int count, char** words) {
   const auto whole = [](const moment&) { return true; };
   const auto late = [](const moment& m) { return m.time_s >= late_s; };
 
-  double up = 0, down = 0;
+  centred soft;
   for (auto file = all.begin() + 3; file != divider; ++file) {
     const centred c = centre(pitch_track(*file, nominal_Hz), whole);
-    std::printf("soft %-36s K = %6.0f cents per unit of power\n", file->c_str(), c.slope_up / c.slope_down);
-    up += c.slope_up, down += c.slope_down;
+    std::printf("soft %-28s power alone: K = %6.0f cents per unit of power\n", file->c_str(), all_alike(c)[0]);
+    soft.normal += c.normal, soft.right += c.right;
   }
-  const double K = up / down;
-  std::printf("K of all soft plucks: %.0f\n", K);
+  const powers K = not_negative(soft), alike = all_alike(soft);
+  std::printf("all soft plucks: K_n =");
+  for (const double k : K) std::printf(" %.0f", k);
+  std::printf("; power alone: %.0f\n", alike[0]);
 
   std::vector<real::panel> panels;
   for (auto file = divider + 1; file != all.end(); ++file) {
     const auto track = pitch_track(*file, nominal_Hz);
-    const centred base = centre(track, late), own = centre(track, whole);
+    const centred base = centre(track, late);
     const std::size_t slash = file->rfind('/') == std::string::npos ? 0 : file->rfind('/') + 1;
     real::panel shown{file->substr(slash), "time, s", "pitch above its late value, cents", {}};
     shown.all = {{"measured, partials 2 to 6", "#8fc1e3", {}, {}, false}, {"foretold from the soft plucks", "#8c1d40", {}, {}, true}};
-    double before = 0, after = 0, weight = 0;
+    double before = 0, after = 0, after_alike = 0, weight = 0;
     for (const moment& m : track) {
-      const double glide = m.cents - base.base_cents[m.partial], foretold = K * (m.power - base.base_power[m.partial]);
+      const powers dp = m.power - base.power[m.partial];
+      const double glide = m.cents - base.cents[m.partial], foretold = K.dot(dp);
       if (!std::isfinite(glide)) continue;
       shown.all[0].x.push_back(m.time_s), shown.all[0].y.push_back(glide);
       if (shown.all[1].x.empty() || shown.all[1].x.back() < m.time_s) shown.all[1].x.push_back(m.time_s), shown.all[1].y.push_back(foretold);
       if (late(m)) continue;
       before += m.weight * glide * glide;
       after += m.weight * std::pow(glide - foretold, 2);
+      after_alike += m.weight * std::pow(glide - alike.dot(dp), 2);
       weight += m.weight;
     }
-    std::printf("hard %-36s residual before 2.5 s: %5.2f cents without, %5.2f with; its own K = %6.0f\n", file->c_str(), std::sqrt(before / weight),
-                std::sqrt(after / weight), own.slope_up / own.slope_down);
+    std::printf("hard %-28s left before 2.5 s: %5.2f cents without, %5.2f with K_n, %5.2f with power alone\n", file->c_str(), std::sqrt(before / weight),
+                std::sqrt(after / weight), std::sqrt(after_alike / weight));
     panels.push_back(std::move(shown));
   }
   panels.resize(std::min<std::size_t>(panels.size(), 2));

@@ -90,8 +90,8 @@ void tell(const std::string& file, const std::vector<rosin::numbered_frequency>&
   for (const auto& p : partials) {
     const double cents = 1200 * std::log2(p.frequency_Hz / p.number / fit.value[0]);
     off += cents * cents / static_cast<double>(partials.size());
-    shown.x.push_back(p.number), shown.y.push_back(cents);
   }
+  shown.x.push_back(fit.value[0]), shown.y.push_back(std::sqrt(off));
   std::printf("%-28s %2zu partials  f0 %8.3f Hz  b = %10.2e +- %.1e  off n f0: %6.3f cents\n", file.c_str(), partials.size(), fit.value[0], fit.value[1],
               std::sqrt(fit.covariance(1, 1)), std::sqrt(off));
 }
@@ -100,7 +100,7 @@ void tell(const std::string& file, const std::vector<rosin::numbered_frequency>&
 
 int main(int count, char** words) {
   if (count < 4) return std::printf("usage: %s FIGURE.svg NOMINAL_HZ BOWED.wav ... -- NOMINAL_HZ PLUCKED.wav ...\n", words[0]), 2;
-  real::panel p{"Partials against n f0", "number of the partial", "deviation, cents", {}};
+  real::panel p{"How far partials are from n f0", "pitch, Hz", "root mean square deviation, cents", {}, true, true};
   p.all = {{"bowed", "#1b6ca8", {}, {}, false}, {"plucked", "#d9731a", {}, {}, false}};
   bool bowed = true;
   for (int i = 2; i + 1 < count; i += 2) {
