@@ -105,11 +105,12 @@ struct curve {
 struct panel {
   std::string title, x, x_label, y_label;
   std::vector<curve> curves;
-  std::string more{};  // gnuplot
 };
 
 constexpr const char *blue = "lc '#1b6ca8'", *orange = "lc '#d9731a' lw 1", *black = "lc '#222222' lw 1 dt 2", *red = "lc '#8c1d40'";
 constexpr const char *pale = "lc '#8fc1e3' lw 3", *heavy = "lc '#8c1d40' lw 5", *dotted = "lc '#5f8f3f' lw 1.2 dt 3";
+
+std::string broken_where_empty(const std::string& place) { return "valid(" + place + ") ? column(" + place + ") : NaN"; }
 
 /// figN.csv and figN.gp in the folder. Panels are laid out in rows.
 void write(const std::filesystem::path& folder, int number, const rosin::table& data, const std::vector<panel>& panels, int columns) {
@@ -118,8 +119,9 @@ void write(const std::filesystem::path& folder, int number, const rosin::table& 
   rosin::write_csv(csv, data);
   const auto rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
   gp << "set terminal svg size 940," << 60 + 220 * rows << " font 'sans-serif,12' background 'white'\nset output '" << name << ".svg'\n"
-     << "set datafile separator ','\nset datafile commentschars '#'\nset datafile missing ''\nset border 3 lc '#555555'\nset tics nomirror\n"
-     << "set grid lc '#e4e4e4'\nset key top right horizontal samplen 2 font ',11' noautotitle\nset style data lines\nset format y '%g'\n"
+     << "set datafile separator ','\nset datafile commentschars '#'\nset border 3 lc '#555555'\nset tics nomirror\n"
+     << "set grid lc '#e4e4e4'\nset style data lines\nset format y '%g'\nset autoscale xfix\n"
+     << "set key at graph 1, graph 1.13 right horizontal samplen 1.5 font ',11' noautotitle\n"
      << "set multiplot layout " << rows << "," << columns << " margins 0.075,0.985," << 0.19 / rows << "," << 1 - 0.12 / rows << " spacing 0.085," << 0.32 / rows << "\n";
   const auto place = [&](const std::string& wanted) {
     for (std::size_t c = 0; c < data.columns.size(); ++c)
@@ -127,11 +129,11 @@ void write(const std::filesystem::path& folder, int number, const rosin::table& 
     return std::string{"no_such_column"};
   };
   for (const panel& p : panels) {
-    gp << "set title '" << p.title << "' offset 0,-0.6\nset xlabel '" << p.x_label << "' offset 0,0.4\nset ylabel '" << p.y_label << "' offset 1,0\n" << p.more << "\nplot ";
+    gp << "set label 1 '" << p.title << "' at graph 0, graph 1.08\nset xlabel '" << p.x_label << "' offset 0,0.4\nset ylabel '" << p.y_label << "' offset 1,0\nplot ";
     for (std::size_t c = 0; c < p.curves.size(); ++c)
-      gp << (c > 0 ? ", " : "") << "'" << name << ".csv' every ::1 using " << place(p.curves[c].x.empty() ? p.x : p.curves[c].x) << ":" << place(p.curves[c].column) << " " << p.curves[c].style << " title '"
+      gp << (c > 0 ? ", " : "") << "'" << name << ".csv' every ::1 using " << place(p.curves[c].x.empty() ? p.x : p.curves[c].x) << ":(" << broken_where_empty(place(p.curves[c].column)) << ") " << p.curves[c].style << " title '"
          << p.curves[c].title << "'";
-    gp << "\nset autoscale\n";
+    gp << "\n";
   }
   gp << "unset multiplot\n";
 }
@@ -192,8 +194,8 @@ rosin::calibration pluck(const std::filesystem::path& folder, double position) {
 
 std::vector<panel> four_panels(const std::string& second) {
   return {{"(a) forces on the ends", "time_ms", "time (ms)", "force (N)", {{"end_near_N", blue, "near"}, {"end_far_N", orange, "far"}}},
-          {"(b) velocity at the bow, Eqs. (1)", "time_ms", "time (ms)", "velocity (m/s)", {{"near_m_s", pale, "from near"}, {"far_m_s", orange, "from far"}, {"true_m_s", black, second}}},
-          {"(c) friction force, Eqs. (3)", "time_ms", "time (ms)", "force (N)", {{"near_N", pale, "from near"}, {"far_N", orange, "from far"}, {"true_N", black, second}, {"slips_N", heavy, ""}}},
+          {"(b) velocity, Eqs. (1)", "time_ms", "time (ms)", "velocity (m/s)", {{"near_m_s", pale, "near"}, {"far_m_s", orange, "far"}, {"true_m_s", black, second}}},
+          {"(c) friction, Eqs. (3)", "time_ms", "time (ms)", "force (N)", {{"near_N", pale, "near"}, {"far_N", orange, "far"}, {"true_N", black, second}, {"slips_N", heavy, ""}}},
           {"(d) force against velocity", "velocity_m_s", "velocity (m/s)", "force (N)", {{"force_N", blue, "reconstructed"}}}};
 }
 
@@ -232,8 +234,9 @@ void laboratory(const std::filesystem::path& folder, const stroke& s, const rosi
   std::printf("Fig. 3: two versions of the force: Delta %.4f, with the paper's filters %.4f (paper 0.20)\n", delta(b.near_N, b.far_N), delta(paper.near_N, paper.far_N));
   auto panels = four_panels("");
   panels[1].curves.pop_back(), panels[2].curves.erase(panels[2].curves.begin() + 2);
-  write(folder, 3, stretch(0.300, 0.3061, "Fig. 3: recorded", force[0], force[1], b, s.speed_m_s).data, panels, 2);
-  write(folder, 4, stretch(0.009, 0.023, "Fig. 4: the transient", force[0], force[1], b, s.speed_m_s).data, {panels[1], panels[2]}, 1);
+  write(folder, 3, stretch(0.300, 0.3042, "Fig. 3: recorded", force[0], force[1], b, s.speed_m_s).data, panels, 2);
+  panels[1].title = "(a) velocity at the bow", panels[2].title = "(b) friction force";
+  write(folder, 4, stretch(0.010, 0.021, "Fig. 4: the transient", force[0], force[1], b, s.speed_m_s).data, {panels[1], panels[2]}, 1);
 
   const auto p = *rosin::reconstruct_periodic(c.at, force[0], force[1], limits, rate_Hz);
   const std::size_t n = force[0].size();
@@ -255,7 +258,7 @@ void simulation(const std::filesystem::path& folder, const stroke& s) {
   const bow b = reconstruct(at, t.force_near_N, t.force_far_N), paper = reconstruct<printed>(at, t.force_near_N, t.force_far_N);
   std::printf("Fig. 6: two versions of the force: Delta %.4f, with Eq. (6) as printed %.4f (paper 0.07)\n", delta(b.near_N, b.far_N), delta(paper.near_N, paper.far_N));
   std::printf("        their mean against the truth: Delta %.4f, with Eq. (6) as printed %.4f (paper 0.042)\n", delta(b.force_N, force), delta(paper.force_N, force));
-  window w = stretch(0.300, 0.3061, "Fig. 6: simulated, parameters known; printed: Eq. (6) as it stands", t.force_near_N, t.force_far_N, b, s.speed_m_s);
+  window w = stretch(0.300, 0.3042, "Fig. 6: simulated, parameters known; printed: Eq. (6) as it stands", t.force_near_N, t.force_far_N, b, s.speed_m_s);
   w.add("true_m_s", velocity), w.add("true_N", force);
   auto panels = four_panels("truth");
   panels[3].curves = {{"force_N", pale, "reconstructed"}, {"true_N", black, "truth", "true_m_s"}};
@@ -274,13 +277,17 @@ void track(const std::filesystem::path& folder, const column& force, const colum
   std::printf("Fig. 8: %.2f slips a cycle, %.0f um each in the mean; loops %s\n", slips / cycles, 1e6 * far / slips,
               verdict.sense == rosin::loop_sense::counter_clockwise ? "counter-clockwise" : "without that sense");
   const auto mm = [](column x) { const double first = x[38400]; for (double& v : x) v = 1e3 * (v - first); return x; };
-  window w(0.300, 0.3091, "Fig. 8(b): distance along the rod");
+  window w(0.300, 0.3061, "Fig. 8(b): distance along the rod");
   w.add("centre_mm", mm(rosin::track_along(centre, rate_Hz))), w.add("surface_mm", mm(rosin::track_along(surface, rate_Hz)));
   column slipping(surface.size(), not_known);
   for (const auto& l : loops) std::fill(slipping.begin() + static_cast<std::ptrdiff_t>(l.at.begin), slipping.begin() + static_cast<std::ptrdiff_t>(l.at.end), 0.0);
   w.add("slips_mm", slipping);
-  write(folder, 8, w.data, {{"(b) distance along the rod", "time_ms", "time (ms)", "distance (mm)", {{"centre_mm", blue, "centre"}, {"surface_mm", black, "surface"}, {"slips_mm", heavy, "slips"}},
-                             "set key top left"}}, 1);
+  column um = rosin::track_along(centre, rate_Hz);
+  const column rolled_out = rosin::track_along(surface, rate_Hz);
+  for (std::size_t i = 0; i < um.size(); ++i) um[i] = 1e6 * (um[i] - rolled_out[i]);
+  w.add("rolling_um", um);
+  write(folder, 8, w.data, {{"(b) distance along the rod", "time_ms", "time (ms)", "distance (mm)", {{"centre_mm", blue, "centre"}, {"surface_mm", black, "surface"}, {"slips_mm", heavy, "slips"}}},
+                            {"what rolling moves the centre by", "time_ms", "time (ms)", "distance (um)", {{"rolling_um", red, ""}}}}, 1);
 }
 
 /// Fig. 7: a quarter of the string, torsion eight times as fast, found again from the reconstructed force.
