@@ -146,6 +146,7 @@
 #include <rosin/simulate/regime.hpp>
 #include <rosin/simulate/wave_design.hpp>
 #include <rosin/simulate/wave_echo.hpp>
+#include <rosin/simulate/wave_end.hpp>
 #include <rosin/simulate/wave_kernels.hpp>
 #include <rosin/simulate/wave_local.hpp>
 #include <rosin/simulate/wave_loop.hpp>

@@ -118,8 +118,8 @@ template <FrictionLaw Law, RodMotion Motion>
                               detail::problem_with(burden, rig, stroke.position)})
     if (!problem.empty()) return failure{problem};
   const detail::burdened_steps_of_take how{settings, stroke.duration_s};
-  const auto later = [&](double t) { return motion(t - how.lead_s); };
-  auto steps = step_stroke(rig, burden.string, law, later, burden.rod, stroke.position, burden.contact_width_m, how.duration_s(), how.limit_Hz, how.step_s);
+  auto steps = step_stroke(rig, burden.string, law, motion, burden.rod, stroke.position, burden.contact_width_m, how.duration_s(), how.limit_Hz, how.step_s,
+                           how.decimate.reach());
   disturb(steps.end_N, burden.sensors, how.step_s);
   return how.sampled(steps, settings.sample_rate_Hz);
 }

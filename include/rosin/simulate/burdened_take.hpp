@@ -66,10 +66,11 @@ struct burdened_pluck {
 /// The rod's or bow's own give: a mass on a spring along its motion. None where the mass is 0.
 using yielding_rod = yielding_support;
 
-/// A stroke: `width_m` 0 is one contact, otherwise two, width_m apart, that share the normal force.
+/// A stroke: `width_m` 0 is one contact, otherwise two, width_m apart, that share the normal force. Nothing happens for `still` steps, from
+/// which on the motion's time counts.
 template <FrictionLaw Law, class Motion>
 [[nodiscard]] burdened_steps step_stroke(const modal_rig& rig, const string_burden& burden, Law law, const Motion& motion, const yielding_rod& rod, double position,
-                                         double width_m, double duration_s, double mode_limit_Hz, double step_s) {
+                                         double width_m, double duration_s, double mode_limit_Hz, double step_s, std::size_t still = 0) {
   const double half = width_m / rig.string.length_m / 2;
   const std::vector<double> at = width_m > 0 ? std::vector<double>{position - half, position + half} : std::vector<double>{position};
   const auto contacts = static_cast<Eigen::Index>(at.size());
@@ -86,8 +87,9 @@ template <FrictionLaw Law, class Motion>
   Eigen::VectorXd force = Eigen::VectorXd::Zero(contacts);
   std::size_t slipped = 0;
   bool before = false;
-  for (std::size_t n = 0; n < steps; ++n) {
-    const auto state = motion(static_cast<double>(n) * step_s);
+  for (auto* signal : {&out.end_N[0], &out.end_N[1], &out.force_N, &out.centre_m_s, &out.twist_m_s, &out.rod_m_s, &out.temperature_K}) signal->assign(still, 0.0);
+  for (std::size_t n = still; n < steps; ++n) {
+    const auto state = motion(static_cast<double>(n - still) * step_s);
     const Eigen::VectorXd free = string.free_velocity();
     const auto& mobility = string.mobility();
     const auto solve = [&](Law& l, Eigen::Index i) {  // the others' forces as they stand

@@ -143,8 +143,9 @@ inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
 
 }  // namespace detail
 
-/// Fails where the rig, the position or the settings make no sense, or the rate is too low for them.
-[[nodiscard]] inline outcome<wave_design> design_wave(const modal_rig& rig, double position, const wave_settings& settings = {}) {
+/// Fails where the rig, the position, the settings or the ends make no sense, or the rate is too low for them.
+[[nodiscard]] inline outcome<wave_design> design_wave(const modal_rig& rig, double position, const wave_settings& settings = {},
+                                                      const std::array<modal_termination, 2>& ends = {}) {
   for (const auto& problem : {problem_with(rig, position), problem_with(settings)})
     if (!problem.empty()) return failure{problem};
   if (const auto problem = problem_with_contact(rig, position, settings); !problem.empty()) return failure{problem};
@@ -157,6 +158,10 @@ inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
   }
   if (!best) return best;
   if (rig.torsion.present()) detail::set_turn(*best, rig, position);
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (const auto problem = problem_with(ends[e], best->wave_rate_Hz); !problem.empty()) return failure{problem};
+    best->kernels.ends[e] = {ends[e], best->wave_rate_Hz};
+  }
   const auto stride = best->kernels.stride;
   best->kernels.block = std::max(detail::whole_strides(best->kernels.block, stride), stride);
   return best;

@@ -9,7 +9,8 @@
 // local: the driving-point mobility of a string without ends; fill: E sinc^2, E = 1 / (2 Z_f), the wave that a newton
 // sends out. s, q and R live at 1 / stride of the contact's rate; thin and fill lead down to it and back up.
 // At stride 1 an end may be so near that fill could not look ahead: then that side's echo has a kernel of its own straight to
-// the velocity. Normalised this way the dispersion of the wave impedance needs one short kernel, outside the loop.
+// the velocity. Where an end moves, R_j is still that of a rigid one, and s_j has met the end beforehand (wave_end.hpp).
+// Normalised this way the dispersion of the wave impedance needs one short kernel, outside the loop.
 //
 #pragma once
 
@@ -20,6 +21,7 @@
 
 #include <rosin/propagate/fir.hpp>
 #include <rosin/simulate/modal_bank.hpp>
+#include <rosin/simulate/wave_end.hpp>
 
 namespace rosin {
 
@@ -51,6 +53,7 @@ struct wave_kernels {
   std::ptrdiff_t stride = 1;  ///< steps of the contact for one of the waves
   std::ptrdiff_t block = 1;   ///< steps of the contact computed together, a multiple of the stride
   std::array<wave_taps<T>, 2> echo{};
+  std::array<wave_end, 2> ends{};
   std::size_t near = 0;       ///< the side whose end is nearer
   wave_taps<T> direct{};      ///< stride 1 only: E sinc^2 R of the near side; then fill serves the far side alone
   wave_taps<T> thin{};                ///< contact's rate to the waves'; empty where the stride is 1
@@ -63,7 +66,7 @@ struct wave_kernels {
   /// In another scalar.
   template <class U>
   explicit wave_kernels(const wave_kernels<U>& k)
-      : step_s{k.step_s}, stride{k.stride}, block{k.block}, echo{wave_taps<T>{k.echo[0]}, wave_taps<T>{k.echo[1]}}, near{k.near}, direct{k.direct},
+      : step_s{k.step_s}, stride{k.stride}, block{k.block}, echo{wave_taps<T>{k.echo[0]}, wave_taps<T>{k.echo[1]}}, ends{k.ends}, near{k.near}, direct{k.direct},
         thin{k.thin}, fill(k.fill.begin(), k.fill.end()), local(k.local.begin(), k.local.end()),
         turn{k.turn}, turn_rest{static_cast<T>(k.turn_rest)} {}
 

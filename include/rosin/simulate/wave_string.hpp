@@ -106,6 +106,7 @@ public:
         velocity_{0, k_.block + static_cast<std::ptrdiff_t>(k_.local.size())},
         echoes_{k_.fill_ahead() + fill_back() + 8, wave_ahead_},
         out_{tape(k_.reach_back()), tape(k_.reach_back())},
+        heard_{tape(k_.reach_back()), tape(k_.reach_back())},
         back_{tape(8), tape(8)} {
     begin_block();
   }
@@ -129,9 +130,9 @@ public:
     return state;
   }
 
-  /// Waves that have left for side j up to now: values n ... waves() - 1 at the waves' rate; the last reach_back() are kept.
+  /// Waves that have left for side j up to now, as a rigid end would have to hear them to feel the force that the end feels: values n ... waves() - 1 at the waves' rate; the last reach_back() are kept.
   [[nodiscard]] std::ptrdiff_t waves() const noexcept { return sent_; }
-  [[nodiscard]] T wave(std::size_t j, std::ptrdiff_t n) const noexcept { return *out_[j].at(n); }
+  [[nodiscard]] T wave(std::size_t j, std::ptrdiff_t n) const noexcept { return *(k_.ends[j].moves() ? heard_[j] : out_[j]).at(n); }
   [[nodiscard]] const wave_kernels<T>& kernels() const noexcept { return k_; }
 
 private:
@@ -163,6 +164,7 @@ private:
     echoes_.turn(now_ / k_.stride, waves_end);
     for (std::size_t j = 0; j < 2; ++j) {
       out_[j].turn(sent_, waves_end);
+      heard_[j].turn(sent_, waves_end);
       back_[j].turn(sent_, waves_end);
     }
   }
@@ -184,7 +186,18 @@ private:
       to[0][i] = force + *back_[1].at(sent_ + i);
       to[1][i] = force + *back_[0].at(sent_ + i);
     }
+    for (std::size_t j = 0; j < 2; ++j)
+      if (k_.ends[j].moves()) meet(j, to[j], count);
     sent_ = end;
+  }
+
+  /// What a moving end makes of the waves that leave for it.
+  void meet(std::size_t j, T* waves, std::ptrdiff_t count) noexcept {
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const auto [back, heard] = k_.ends[j](static_cast<double>(waves[i]));
+      waves[i] = static_cast<T>(back);
+      *heard_[j].at(sent_ + i) = static_cast<T>(heard);
+    }
   }
 
   /// Echoes as far ahead as the coming block needs them; the far side's, once more are needed, as far as they are known.
@@ -221,7 +234,7 @@ private:
   std::ptrdiff_t wave_ahead_ = 0, now_ = 0, block_end_ = 0, sent_ = 0, summed_ = 0;
   std::array<std::ptrdiff_t, 2> received_{};
   wave_tape<T> force_, velocity_, echoes_;
-  std::array<wave_tape<T>, 2> out_, back_;
+  std::array<wave_tape<T>, 2> out_, heard_, back_;
   T turn_mobility_ = k_.turn_mobility_m_Ns(), mobility_ = k_.mobility_m_Ns(), last_force_ = 0;
   bool turns_ = k_.turn.mobility(0, 0) > 0;
   std::vector<T> scratch_ = std::vector<T>(static_cast<std::size_t>(k_.block));

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include <rosin/friction/velocity_curve.hpp>
+#include <rosin/simulate/burdened_signals.hpp>
 #include <rosin/simulate/profiled_rod.hpp>
 
 namespace {
@@ -54,6 +55,48 @@ TEST_CASE("under a given force the string moves, and pulls at its ends, as its m
     CHECK(delta(waves->force_near_N, modes->force_near_N) < 2e-3);
     CHECK(delta(waves->force_far_N, modes->force_far_N) < 2e-3);
   }
+}
+
+TEST_CASE("on ends that move the string does what its modes do on them") {
+  const double z = rig.string.impedance_Ns_m();
+  rosin::rig_burden burden;
+  burden.string.ends[0].modes = {{460, 30, z / 0.1}, {2400, 12, z / 0.004}, {5100, 8, z / 0.003}};
+  burden.string.ends[1].modes = {{7000, 20, z / 0.01}};
+  const rosin::wave_settings settings{.oversampling = 4, .pass_Hz = 20e3, .stop_Hz = 30e3};
+  for (const double position : {0.3, 0.12}) {
+    CAPTURE(position);
+    const auto modes = rosin::simulate_stroke(rig, burden, imposed_force{}, rosin::steady_rod{}, {position, 0.02}, settings.as_modal());
+    const auto rigid = rosin::simulate_stroke(rig, imposed_force{}, rosin::steady_rod{}, {position, 0.02}, settings.as_modal());
+    const auto design = rosin::design_wave(rig, position, settings, burden.string.ends);
+    REQUIRE((modes && rigid));
+    REQUIRE_MESSAGE(design, design.error());
+    const auto waves = rosin::simulate_wave_stroke(*design, rig, imposed_force{}, rosin::steady_rod{}, 0.02, settings);
+    REQUIRE_MESSAGE(waves, waves.error());
+    CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 2e-3);
+    CHECK(delta(waves->force_near_N, modes->force_near_N) < 2e-3);
+    CHECK(delta(waves->force_far_N, modes->force_far_N) < 2e-3);
+    CHECK(delta(rigid->centre_velocity_m_s, modes->centre_velocity_m_s) > 0.03);
+    CHECK(delta(rigid->force_near_N, modes->force_near_N) > 0.03);
+  }
+}
+
+TEST_CASE("a bowed string on a body: waves and modes agree until the smallest difference has grown") {
+  const double z = rig.string.impedance_Ns_m();
+  rosin::rig_burden burden;
+  burden.string.ends[0].modes = {{460, 30, z / 0.1}, {2400, 12, z / 0.004}, {5100, 8, z / 0.003}};
+  const rosin::velocity_curve law{rosin::two_exponential_curve<double>{}};
+  const rosin::profiled_rod rod{{}, {{0, 0}, {0.1, 0.3}}, {{0, 0.6}}};
+  const rosin::wave_settings settings{.pass_Hz = 20e3, .stop_Hz = 30e3};
+  const auto modes = rosin::simulate_stroke(rig, burden, law, rod, {0.12, 0.03}, settings.as_modal());
+  const auto design = rosin::design_wave(rig, 0.12, settings, burden.string.ends);
+  REQUIRE(modes);
+  REQUIRE(design);
+  const auto waves = rosin::simulate_wave_stroke(*design, rig, law, rod, 0.03, settings);
+  REQUIRE(waves);
+  CHECK(modes->slips > 5);
+  CHECK(waves->slips == modes->slips);
+  CHECK(delta(waves->contact_force_N, modes->contact_force_N) < 0.03);
+  CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 0.1);
 }
 
 TEST_CASE("a stroke in single precision follows the one in double") {
