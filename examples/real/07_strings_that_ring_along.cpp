@@ -83,7 +83,7 @@ int main(int count, char** words) {
     add_note(real::read_channel(file.string()), pitch_Hz(semitones(name.substr(from, to - from))), columns);
     ++notes;
   }
-  real::series common{"median of all notes, their own partials left out", "#1b6ca8", {}, {}, true}, expected{"open strings, first two partials", "#d9731a", {}, {}, false};
+  real::series common{"median of all notes", "#1b6ca8", {}, {}, true}, expected{"open strings, first two partials", "#d9731a", {}, {}, false};
   for (std::size_t i = 0; i < columns.size(); ++i)
     if (columns[i].size() >= 8) common.x.push_back(lowest_Hz + step_Hz * static_cast<double>(i)), common.y.push_back(median(columns[i]));
   if (common.x.size() < 200) return std::printf("%s: too few notes (%zu)\n", words[1], notes), 1;

@@ -118,7 +118,7 @@ inline void write_panel(std::ostream& out, const panel& p, double left) {
     if (s.name.empty()) continue;
     const std::string look = "fill='" + s.colour + "'";
     text(key, 352, (s.joined ? "\u2014 " : "\u2022 ") + s.name, look.c_str());
-    key += 6.3 * static_cast<double>(s.name.size()) + 28;
+    key += 5.6 * static_cast<double>(s.name.size()) + 28;
   }
 }
 
