@@ -228,7 +228,7 @@ cat >plain.toml <<'TOML'
 schema = 1
 string = { length_m = 0.33, tension_N = 55, fundamental_Hz = 440, quality = 900 }
 contact = { position = 0.3 }
-simulate = { rate_Hz = 16000, duration_s = 0.06, seed = 4 }
+simulate = { rate_Hz = 16000, duration_s = 0.03, seed = 4 }
 take = [ { name = "pluck-1", kind = "pluck", file = "pluck-1.wav", force_N = 1.0 } ]
 [channels]
 near = { index = 0, newtons_per_full_scale = 2, gain_tolerance = 0.05 }
@@ -237,7 +237,7 @@ TOML
 cat >bead.json <<'JSON'
 { "verdict": "explained", "calibration": { "fundamental_Hz": { "value": 440.3 } },
   "missing": [ { "effect": "point-mass", "where": { "position": 0.62 },
-                 "parameters": { "position": { "value": 0.62 }, "mass_kg": { "value": 4e-6 } } } ] }
+                 "parameters": { "position": { "value": 0.62 }, "mass_kg": { "value": 2e-6 } } } ] }
 JSON
 # residual MADE: rms of what two recordings of pluck-1 differ by / rms of the first, the larger of two channels
 residual() { paste <(samples bead/pluck-1.wav) <(samples "$1/pluck-1.wav") | awk '
@@ -249,7 +249,7 @@ grep -q "bead\|point-mass\|0.62" bead/rig.toml && { echo "FAILED: the rig file t
 expect 0 diagnose bead --json found.json
 says "point-mass"
 expect 0 simulate bead --model found.json --out again-with-bead   # rate and duration: those of the recording
-says "0.06 s at 16000 Hz" "with: point-mass"
+says "0.03 s at 16000 Hz" "with: point-mass"
 perl -MJSON::PP -e 'local $/; my $d = decode_json(<STDIN>); $d->{missing} = []; print encode_json($d)' <found.json >none.json
 expect 0 simulate bead --model none.json --out without
 is_silent_about "with:"
