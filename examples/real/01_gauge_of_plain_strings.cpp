@@ -24,7 +24,7 @@ constexpr double scale_m = 0.6477, density_kg_m3 = 7850, modulus_Pa = 2.0e11;  /
 
 struct plain_string {
   const char* name;
-  int open;          ///< semitones above C0
+  int open;  ///< semitones above C0
   double gauge_m;
   const char* colour;
 };
@@ -51,7 +51,9 @@ double upper_half_off(const std::vector<rosin::partial>& partials, double f0, bo
   double sum = 0;
   for (std::size_t i = low.size(); i < partials.size(); ++i) {
     const double n = partials[i].number;
-    sum += std::pow(cents(partials[i].frequency_Hz, stiff ? rosin::partial_frequency(law.value[0], law.value[1], n) : n * rosin::detail::median_of(pitch)), 2);
+    sum += std::pow(cents(partials[i].frequency_Hz,
+                          stiff ? rosin::partial_frequency(law.value[0], law.value[1], n) : n * rosin::detail::median_of(pitch)),
+                    2);
   }
   return std::sqrt(sum / static_cast<double>(partials.size() - low.size()));
 }
@@ -77,8 +79,9 @@ std::optional<gauge> measure(const std::filesystem::path& file, const plain_stri
   if (!si.diameter_from_sound_m) return std::printf("%-12s no stiffness heard\n", name.c_str()), std::nullopt;
   const auto [d, sd] = *si.diameter_from_sound_m;
   const double error = 100 * (d / s.gauge_m - 1);
-  std::printf("%-12s %2d %3zu  %9.3e +- %.0e  %.4f mm  %+5.2f +- %4.2f %%  %7.2f %7.2f cents\n", name.c_str(), fret, fit->partials.size(), fit->inharmonicity,
-              fit->inharmonicity_sd, 1e3 * d, error, 100 * sd / s.gauge_m, upper_half_off(fit->partials, fit->fundamental_Hz, false),
+  std::printf("%-12s %2d %3zu  %9.3e +- %.0e  %.4f mm  %+5.2f +- %4.2f %%  %7.2f %7.2f cents\n", name.c_str(), fret,
+              fit->partials.size(), fit->inharmonicity, fit->inharmonicity_sd, 1e3 * d, error, 100 * sd / s.gauge_m,
+              upper_half_off(fit->partials, fit->fundamental_Hz, false),
               upper_half_off(fit->partials, fit->fundamental_Hz, true));
   if (fret == 1) {
     deviations.all.push_back({std::string{s.name} + ", flexible string", s.colour, {}, {}, false});
@@ -87,7 +90,8 @@ std::optional<gauge> measure(const std::filesystem::path& file, const plain_stri
       for (std::size_t stiff = 0; stiff < 2; ++stiff) {
         auto& points = deviations.all[deviations.all.size() - 2 + stiff];
         points.x.push_back(p.number);
-        points.y.push_back(cents(p.frequency_Hz, rosin::partial_frequency(fit->fundamental_Hz, stiff ? fit->inharmonicity : 0, p.number)));
+        points.y.push_back(
+            cents(p.frequency_Hz, rosin::partial_frequency(fit->fundamental_Hz, stiff ? fit->inharmonicity : 0, p.number)));
       }
   }
   return gauge{fret, error, 100 * sd / s.gauge_m};
@@ -97,7 +101,8 @@ std::optional<gauge> measure(const std::filesystem::path& file, const plain_stri
 
 int main(int count, char** words) {
   if (count < 2) return std::printf("usage: %s FOLDER [FIGURE.svg]\n", words[0]), 2;
-  real::panel deviations{"Partials at fret 1 against n f0", "number of the partial", "deviation, cents", {}}, errors{"Gauge from single notes", "fret", "error, per cent", {}};
+  real::panel deviations{"Partials at fret 1 against n f0", "number of the partial", "deviation, cents", {}};
+  real::panel errors{"Gauge from single notes", "fret", "error, per cent", {}};
   std::printf("note      fret, partials, b                diameter    error               withheld: flexible, stiff\n");
   const std::set<std::filesystem::path> files{std::filesystem::directory_iterator{words[1]}, {}};
   for (const plain_string& s : strings) {

@@ -6,9 +6,9 @@
 //
 //     pitch(t) = base + sum_n K_n P_n(t),     P_n: power of partial n at the pickup
 //
-// A pickup hears each partial by another factor, so each K_n >= 0 is a number of its own, the same for all takes of a string. They
-// are fitted to the soft plucks alone. The hard plucks are then foretold: of them only the base, from 2.5 s on, is used, because
-// no peg stands still between takes. One K for all of them, "power alone", is told beside it.
+// A pickup hears each partial by another factor, so each K_n >= 0 is a number of its own, the same for all takes of a string.
+// They are fitted to the soft plucks alone. The hard plucks are then foretold: of them only the base, from 2.5 s on, is used,
+// because no peg stands still between takes. One K for all of them, "power alone", is told beside it.
 //
 //     02_glide_of_hard_plucks NOMINAL_HZ FIGURE.svg SOFT.flac... -- HARD.flac...
 //
@@ -48,15 +48,18 @@ std::vector<moment> pitch_track(const std::string& file, double nominal_Hz) {
     double loudest = 0;
     for (std::size_t i = 0; i < band.size(); ++i) {
       const auto& z = band[i].samples;
-      const auto a = static_cast<std::size_t>((begin + t - hop_s) * band[i].rate_Hz), b = static_cast<std::size_t>((begin + t + hop_s) * band[i].rate_Hz);
+      const auto a = static_cast<std::size_t>((begin + t - hop_s) * band[i].rate_Hz),
+                 b = static_cast<std::size_t>((begin + t + hop_s) * band[i].rate_Hz);
       std::complex<double> turn = 0;
-      for (std::size_t j = a; j < b; ++j) turn += z[j + 1] * std::conj(z[j]), power[i] += std::norm(z[j]) / static_cast<double>(b - a);
+      for (std::size_t j = a; j < b; ++j)
+        turn += z[j + 1] * std::conj(z[j]), power[i] += std::norm(z[j]) / static_cast<double>(b - a);
       pitch[i] = band[i].centre_Hz + std::arg(turn) * band[i].rate_Hz / rosin::detail::full_turn;
       loudest = std::max(loudest, power[i]);
     }
     for (std::size_t i = first_partial - 1; i < last_partial; ++i)
       if (power[i] > loudest * std::pow(10, -heard_dB / 10))
-        track.push_back({t, 1200 * std::log2(pitch[i] / nominal_Hz / static_cast<double>(i + 1)), std::sqrt(power[i] / loudest), Eigen::Map<const powers>(power.data()), i});
+        track.push_back({t, 1200 * std::log2(pitch[i] / nominal_Hz / static_cast<double>(i + 1)), std::sqrt(power[i] / loudest),
+                         Eigen::Map<const powers>(power.data()), i});
   }
   return track;
 }
@@ -75,7 +78,8 @@ centred centre(const std::vector<moment>& track, Counted counted) {
   c.power.fill(powers::Zero());
   std::array<double, last_partial> weight{};
   for (const moment& m : track)
-    if (counted(m)) c.cents[m.partial] += m.weight * m.cents, c.power[m.partial] += m.weight * m.power, weight[m.partial] += m.weight;
+    if (counted(m))
+      c.cents[m.partial] += m.weight * m.cents, c.power[m.partial] += m.weight * m.power, weight[m.partial] += m.weight;
   for (std::size_t i = 0; i < weight.size(); ++i) c.cents[i] /= weight[i], c.power[i] /= weight[i];  // NaN: never heard there
   for (const moment& m : track)
     if (counted(m)) {
@@ -90,7 +94,8 @@ centred centre(const std::vector<moment>& track, Counted counted) {
 powers not_negative(const centred& sums) {
   powers K = powers::Zero();
   for (int round = 0; round < 20000; ++round)
-    for (Eigen::Index i = 0; i < stretching; ++i) K[i] = std::max(0.0, K[i] + (sums.right[i] - sums.normal.row(i).dot(K)) / sums.normal(i, i));
+    for (Eigen::Index i = 0; i < stretching; ++i)
+      K[i] = std::max(0.0, K[i] + (sums.right[i] - sums.normal.row(i).dot(K)) / sums.normal(i, i));
   return K;
 }
 
@@ -101,7 +106,8 @@ powers all_alike(const centred& sums) { return powers::Constant(sums.right.sum()
 int main(int count, char** words) {
   const std::vector<std::string> all{words, words + count};
   const auto divider = std::find(all.begin(), all.end(), "--");
-  if (count < 6 || divider == all.end()) return std::printf("usage: %s NOMINAL_HZ FIGURE.svg SOFT.flac... -- HARD.flac...\n", words[0]), 2;
+  if (count < 6 || divider == all.end())
+    return std::printf("usage: %s NOMINAL_HZ FIGURE.svg SOFT.flac... -- HARD.flac...\n", words[0]), 2;
   const double nominal_Hz = std::atof(words[1]);
   const auto whole = [](const moment&) { return true; };
   const auto late = [](const moment& m) { return m.time_s >= late_s; };
@@ -123,22 +129,24 @@ int main(int count, char** words) {
     const centred base = centre(track, late);
     const std::size_t slash = file->rfind('/') == std::string::npos ? 0 : file->rfind('/') + 1;
     real::panel shown{file->substr(slash), "time, s", "pitch above its late value, cents", {}};
-    shown.all = {{"measured, partials 2 to 6", "#8fc1e3", {}, {}, false}, {"foretold from the soft plucks", "#8c1d40", {}, {}, true}};
+    shown.all = {{"measured, partials 2 to 6", "#8fc1e3", {}, {}, false},
+                 {"foretold from the soft plucks", "#8c1d40", {}, {}, true}};
     double before = 0, after = 0, after_alike = 0, weight = 0;
     for (const moment& m : track) {
       const powers dp = m.power - base.power[m.partial];
       const double glide = m.cents - base.cents[m.partial], foretold = K.dot(dp);
       if (!std::isfinite(glide)) continue;
       shown.all[0].x.push_back(m.time_s), shown.all[0].y.push_back(glide);
-      if (shown.all[1].x.empty() || shown.all[1].x.back() < m.time_s) shown.all[1].x.push_back(m.time_s), shown.all[1].y.push_back(foretold);
+      if (shown.all[1].x.empty() || shown.all[1].x.back() < m.time_s)
+        shown.all[1].x.push_back(m.time_s), shown.all[1].y.push_back(foretold);
       if (late(m)) continue;
       before += m.weight * glide * glide;
       after += m.weight * std::pow(glide - foretold, 2);
       after_alike += m.weight * std::pow(glide - alike.dot(dp), 2);
       weight += m.weight;
     }
-    std::printf("hard %-28s left before 2.5 s: %5.2f cents without, %5.2f with K_n, %5.2f with power alone\n", file->c_str(), std::sqrt(before / weight),
-                std::sqrt(after / weight), std::sqrt(after_alike / weight));
+    std::printf("hard %-28s left before 2.5 s: %5.2f cents without, %5.2f with K_n, %5.2f with power alone\n", file->c_str(),
+                std::sqrt(before / weight), std::sqrt(after / weight), std::sqrt(after_alike / weight));
     panels.push_back(std::move(shown));
   }
   panels.resize(std::min<std::size_t>(panels.size(), 2));

@@ -30,7 +30,8 @@ locked_phase phase_of(const rosin::baseband_record& z, std::size_t a, std::size_
   locked_phase p;
   double turned = 0;
   for (std::size_t j = a; j < b; ++j) {
-    if (j > a) turned += std::arg(z.samples[j] * std::conj(z.samples[j - 1])) + rosin::detail::full_turn * z.centre_Hz / z.rate_Hz;
+    if (j > a)
+      turned += std::arg(z.samples[j] * std::conj(z.samples[j - 1])) + rosin::detail::full_turn * z.centre_Hz / z.rate_Hz;
     p.radians.push_back(turned);
     p.power += std::norm(z.samples[j]);
   }
@@ -59,7 +60,8 @@ std::vector<rosin::numbered_frequency> bowed_partials(const real::channel& heard
   std::map<int, locked_phase> all;
   int loudest = 1;
   for (int n = 1; n <= highest; ++n) {
-    all[n] = phase_of(bank.around(n * f0), static_cast<std::size_t>(from * lasts * bank.rate()), static_cast<std::size_t>(to * lasts * bank.rate()));
+    all[n] = phase_of(bank.around(n * f0), static_cast<std::size_t>(from * lasts * bank.rate()),
+                      static_cast<std::size_t>(to * lasts * bank.rate()));
     if (n <= 8 && all[n].power > all[loudest].power) loudest = n;
   }
   const auto& main = all[loudest];
@@ -83,7 +85,8 @@ std::vector<rosin::numbered_frequency> plucked_partials(const real::channel& hea
   return found;
 }
 
-void tell(const std::string& file, const std::vector<rosin::numbered_frequency>& partials, double nominal_Hz, real::series& shown) {
+void tell(const std::string& file, const std::vector<rosin::numbered_frequency>& partials, double nominal_Hz,
+          real::series& shown) {
   if (partials.size() < 4) return std::printf("%-28s too few partials\n", file.c_str()), void();
   const auto fit = rosin::fit_pitch(partials, nominal_Hz, 0);
   double off = 0;
@@ -92,8 +95,8 @@ void tell(const std::string& file, const std::vector<rosin::numbered_frequency>&
     off += cents * cents / static_cast<double>(partials.size());
   }
   shown.x.push_back(fit.value[0]), shown.y.push_back(std::sqrt(off));
-  std::printf("%-28s %2zu partials  f0 %8.3f Hz  b = %10.2e +- %.1e  off n f0: %6.3f cents\n", file.c_str(), partials.size(), fit.value[0], fit.value[1],
-              std::sqrt(fit.covariance(1, 1)), std::sqrt(off));
+  std::printf("%-28s %2zu partials  f0 %8.3f Hz  b = %10.2e +- %.1e  off n f0: %6.3f cents\n", file.c_str(), partials.size(),
+              fit.value[0], fit.value[1], std::sqrt(fit.covariance(1, 1)), std::sqrt(off));
 }
 
 }  // namespace
@@ -107,8 +110,8 @@ int main(int count, char** words) {
     if (std::string{words[i]} == "--") bowed = false, ++i;
     const double nominal_Hz = std::atof(words[i]);
     const auto heard = real::read_channel(words[i + 1]);
-    tell(std::string{bowed ? "bowed   " : "plucked "} + words[i + 1], bowed ? bowed_partials(heard, nominal_Hz) : plucked_partials(heard, nominal_Hz), nominal_Hz,
-         p.all[bowed ? 0 : 1]);
+    tell(std::string{bowed ? "bowed   " : "plucked "} + words[i + 1],
+         bowed ? bowed_partials(heard, nominal_Hz) : plucked_partials(heard, nominal_Hz), nominal_Hz, p.all[bowed ? 0 : 1]);
   }
   return real::write_figure(words[1], {p}) ? 0 : 1;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Hidden physics: the place of the sensor. The starting model hears all partials alike; they should then lie on a straight line of
-// level against the logarithm of their number. A pickup x from the bridge hears partial n as sin(n pi x / L), two at once as
+// Hidden physics: the place of the sensor. The starting model hears all partials alike; they should then lie on a straight line
+// of level against the logarithm of their number. A pickup x from the bridge hears partial n as sin(n pi x / L), two at once as
 //
 //     sin(n pi x1 / L) + sin(n pi x2 / L)
 //
@@ -29,7 +29,8 @@ struct plucked_string {
   int open;  ///< semitones above C0
   const char* colour;
 };
-constexpr plucked_string strings[] = {{"E2", 28, "#222222"}, {"A", 33, "#8c1d40"}, {"D", 38, "#5f8f3f"}, {"G", 43, "#d9731a"}, {"E4", 52, "#1b6ca8"}};
+constexpr plucked_string strings[] = {
+    {"E2", 28, "#222222"}, {"A", 33, "#8c1d40"}, {"D", 38, "#5f8f3f"}, {"G", 43, "#d9731a"}, {"E4", 52, "#1b6ca8"}};
 
 int semitones(const std::string& note) {
   const int natural[] = {9, 11, 0, 2, 4, 5, 7};
@@ -58,7 +59,8 @@ double left_over(const note& t, const std::vector<double>& pickups_dB) {
       sx += x, sy += y[i], sxx += x * x, sxy += x * y[i];
     }
     const double b = (count * sxy - sx * sy) / (count * sxx - sx * sx), a = (sy - b * sx) / count;
-    for (std::size_t i = 0; i < y.size(); ++i) sum += std::min(std::pow(y[i] - a - b * t.log_number[i], 2), outlier_dB * outlier_dB);
+    for (std::size_t i = 0; i < y.size(); ++i)
+      sum += std::min(std::pow(y[i] - a - b * t.log_number[i], 2), outlier_dB * outlier_dB);
     least = std::min(least, sum);
   }
   return least;
@@ -71,7 +73,8 @@ double left_over(const std::vector<note>& notes, const std::vector<double>& plac
     std::vector<double> comb(t.number.size(), 0.0);
     for (std::size_t i = 0; i < comb.size() && !places_m.empty(); ++i) {
       double sines = 0;
-      for (const double x : places_m) sines += std::sin(t.number[i] * std::numbers::pi * x / t.length_m) / static_cast<double>(places_m.size());
+      for (const double x : places_m)
+        sines += std::sin(t.number[i] * std::numbers::pi * x / t.length_m) / static_cast<double>(places_m.size());
       comb[i] = comb_dB(sines);
     }
     sum += left_over(t, comb);
@@ -87,7 +90,8 @@ std::vector<note> read_notes(const std::set<std::filesystem::path>& files, const
     if (!name.starts_with(begin)) continue;
     const int at = semitones(name.substr(begin.size(), name.find("_mp") - begin.size()));
     const auto heard = real::read_channel(file.string());
-    const auto fit = rosin::fit_pickup(heard.samples, heard.rate_Hz, 440 * std::pow(2, (at - 57) / 12.0), {.partials_at_most = 40});
+    const auto fit =
+        rosin::fit_pickup(heard.samples, heard.rate_Hz, 440 * std::pow(2, (at - 57) / 12.0), {.partials_at_most = 40});
     if (!fit) continue;
     note t;
     t.length_m = scale_m * std::pow(2, -(at - s.open) / 12.0);
@@ -110,7 +114,8 @@ std::vector<note> read_notes(const std::set<std::filesystem::path>& files, const
 int main(int count, char** words) {
   if (count < 2) return std::printf("usage: %s FOLDER [FIGURE.svg]\n", words[0]), 2;
   const std::set<std::filesystem::path> files{std::filesystem::directory_iterator{words[1]}, {}};
-  real::panel one{"One pickup: what is left over", "distance from the bridge, m", "dB", {}}, two{"Two pickups at once: the best pair of each string", "nearer pickup, m", "farther pickup, m", {}};
+  real::panel one{"One pickup: what is left over", "distance from the bridge, m", "dB", {}};
+  real::panel two{"Two pickups at once: the best pair of each string", "nearer pickup, m", "farther pickup, m", {}};
   std::printf("string  notes  no place      one pickup          two pickups\n");
   for (const plucked_string& s : strings) {
     const auto notes = read_notes(files, s);
@@ -124,8 +129,8 @@ int main(int count, char** words) {
       for (double other = x + 0.01; other < to_m; other += step_m)
         if (const double pair = left_over(notes, {x, other}); pair < least_pair) least_pair = pair, near = x, far = other;
     }
-    std::printf("%-6s  %5zu  %5.2f dB   %5.2f dB at %3.0f mm   %5.2f dB at %3.0f and %3.0f mm\n", s.name, notes.size(), left_over(notes, {}), least, 1e3 * at, least_pair,
-                1e3 * near, 1e3 * far);
+    std::printf("%-6s  %5zu  %5.2f dB   %5.2f dB at %3.0f mm   %5.2f dB at %3.0f and %3.0f mm\n", s.name, notes.size(),
+                left_over(notes, {}), least, 1e3 * at, least_pair, 1e3 * near, 1e3 * far);
     one.all.push_back(std::move(curve));
     two.all.push_back({s.name, s.colour, {near}, {far}, false});
   }

@@ -68,7 +68,9 @@ struct axis {
     low -= more;
     high += more;
   }
-  [[nodiscard]] double operator()(double v) const { return from + ((log ? std::log10(v) : v) - low) / (high - low) * (to - from); }
+  [[nodiscard]] double operator()(double v) const {
+    return from + ((log ? std::log10(v) : v) - low) / (high - low) * (to - from);
+  }
   [[nodiscard]] std::vector<double> ticks() const {
     std::vector<double> at;
     if (log && high - low > 0.9) {
@@ -98,7 +100,8 @@ inline void write_panel(std::ostream& out, const panel& p, double left) {
     text(x(v), 315, number(v), "text-anchor='middle'");
   }
   for (const double v : y.ticks()) {
-    out << "<line x1='" << x.from << "' x2='" << x.to << "' y1='" << number(y(v)) << "' y2='" << number(y(v)) << "' stroke='#ddd'/>\n";
+    out << "<line x1='" << x.from << "' x2='" << x.to << "' y1='" << number(y(v)) << "' y2='" << number(y(v))
+        << "' stroke='#ddd'/>\n";
     text(x.from - 5, y(v) + 4, number(v), "text-anchor='end'");
   }
   text((x.from + x.to) / 2, 24, p.title, "text-anchor='middle' font-weight='bold'");
