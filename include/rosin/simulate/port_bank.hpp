@@ -25,7 +25,7 @@ public:
     const auto turning = torsional_modes(rig, limit_Hz);
     modes.insert(modes.end(), turning.begin(), turning.end());
     const auto n = static_cast<Eigen::Index>(modes.size());
-    for (auto* a : {&mass, &omega, &number, &re_, &im_, &own_, &turn_re_, &turn_im_, &push_re_, &push_im_, &once_re_, &once_im_, &q_re_, &q_im_, &k_}) a->setZero(n);
+    for (auto* a : {&mass, &omega, &number, &re_, &im_, &own_, &turn_re_, &turn_im_, &push_re_, &push_im_, &once_re_, &once_im_, &q_re_, &q_im_, &k_, &felt_, &now_re_, &now_im_, &drive_}) a->setZero(n);
     end_.setZero(n, 2), end_damping_.setZero(n);
     for (Eigen::Index i = 0; i < n; ++i) set_mode(i, modes[static_cast<std::size_t>(i)], rig.damping == damping_convention::kelvin_voigt && i < transverse_);
   }
@@ -64,10 +64,13 @@ public:
   Eigen::MatrixXd share;                         ///< static forces on the ends, of these modes only
 
   /// Velocities at the ports and forces on the ends at the end of the step under way if no force acts there.
-  void read_free(Eigen::VectorXd& velocity, Eigen::Vector2d& end) const {
-    const Eigen::ArrayXd re = re_ + once_re_ * own_;
-    velocity = shape_.transpose() * re.matrix();
-    end = end_.transpose() * felt(re, im_ + once_im_ * own_).matrix();
+  void read_free(Eigen::VectorXd& velocity, Eigen::Vector2d& end) {
+    now_re_ = re_, now_im_ = im_;
+    if (axial_ > 0) now_re_ += once_re_ * own_, now_im_ += once_im_ * own_;
+    velocity.noalias() = shape_.transpose() * now_re_.matrix();
+    now_im_ *= q_im_, now_re_ *= felt_;
+    now_im_ += now_re_;
+    end.noalias() = end_.transpose() * now_im_.matrix();
     if (axial_ > 0) end += pull_;
   }
   /// Of the twist alone under these forces.
@@ -76,11 +79,14 @@ public:
     return (shape_.col(port).tail(turning).array() * (re_.tail(turning) + once_re_.tail(turning) * (shape_.bottomRows(turning) * force).array())).sum();
   }
   void advance(const Eigen::VectorXd& force) {
-    const Eigen::ArrayXd drive = (shape_ * force).array() + own_;
-    if (axial_ > 0) raise_tension(re_ + once_re_ * drive, im_ + once_im_ * drive);
-    const Eigen::ArrayXd re = turn_re_ * re_ - turn_im_ * im_ + push_re_ * drive;
-    im_ = turn_im_ * re_ + turn_re_ * im_ + push_im_ * drive;
-    re_ = re;
+    drive_.matrix().noalias() = shape_ * force;
+    if (axial_ > 0) {
+      drive_ += own_;
+      raise_tension(re_ + once_re_ * drive_, im_ + once_im_ * drive_);
+    }
+    now_re_ = turn_re_ * re_ - turn_im_ * im_ + push_re_ * drive_;
+    im_ = turn_im_ * re_ + turn_re_ * im_ + push_im_ * drive_;
+    re_.swap(now_re_);
   }
   /// At rest under these forces.
   void rest_under(const Eigen::VectorXd& force) {
@@ -111,6 +117,7 @@ private:
     q_re_[i] = p.real() / (m.omega_rad_s * m.omega_rad_s), q_im_[i] = p.imag() / (m.omega_rad_s * m.omega_rad_s);
     end_(i, 0) = m.end_stiffness_N_m, end_(i, 1) = m.parity() * m.end_stiffness_N_m;
     end_damping_[i] = in_stress ? m.inverse_quality / m.omega_rad_s : 0;
+    felt_[i] = q_re_[i] + end_damping_[i];
   }
   /// Displacement and its share of the stress, from velocity and its companion.
   [[nodiscard]] Eigen::ArrayXd felt(const Eigen::ArrayXd& re, const Eigen::ArrayXd& im) const { return q_re_ * re + q_im_ * im + end_damping_ * re; }
@@ -124,7 +131,7 @@ private:
 
   double length_, axial_, step_;
   Eigen::Index transverse_ = 0;
-  Eigen::ArrayXd re_, im_, own_, turn_re_, turn_im_, push_re_, push_im_, once_re_, once_im_, q_re_, q_im_, k_, end_damping_;
+  Eigen::ArrayXd re_, im_, own_, turn_re_, turn_im_, push_re_, push_im_, once_re_, once_im_, q_re_, q_im_, k_, end_damping_, felt_, now_re_, now_im_, drive_;
   Eigen::MatrixXd shape_, end_;
   Eigen::Vector2d pull_ = Eigen::Vector2d::Zero();
 };
