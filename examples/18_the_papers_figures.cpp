@@ -49,7 +49,7 @@ struct stroke {
   stroke(double torsional_speed, double beta, double speed, double normal)
       : position{beta}, speed_m_s{speed}, normal_N{normal},
         truth{*rosin::simulate_stroke(rig(torsional_speed), rosin_layer(normal), rosin::steady_rod{.speed_m_s = speed, .normal_force_N = normal},
-                                      {.position = beta, .duration_s = 0.36}, {.oversampling = 4})} {}
+                                      {.position = beta, .duration_s = 0.26}, {.oversampling = 4})} {}
 };
 
 /// What two converters of 16 bits with 0.3 mN of noise make of the forces on the ends; their gains are not known.
@@ -93,8 +93,8 @@ column part(const column& x, double from_s, double to_s) {
   return {at(from_s), at(to_s)};
 }
 
-/// Delta of Eq. (12) over the last 0.15 s that are known.
-double delta(const column& a, const column& b) { return rosin::consistency_delta(part(a, 0.2, 0.35), part(b, 0.2, 0.35)); }
+/// Delta of Eq. (12) over 0.15 s of steady motion.
+double delta(const column& a, const column& b) { return rosin::consistency_delta(part(a, 0.1, 0.25), part(b, 0.1, 0.25)); }
 
 // ---- pictures --------------------------------------------------------------------------------------------------------------------
 
@@ -108,7 +108,7 @@ struct panel {
 };
 
 constexpr const char *blue = "lc '#1b6ca8'", *orange = "lc '#d9731a' lw 1", *black = "lc '#222222' lw 1 dt 2", *red = "lc '#8c1d40'";
-constexpr const char *pale = "lc '#8fc1e3' lw 3", *heavy = "lc '#8c1d40' lw 5", *dotted = "lc '#5f8f3f' lw 1.2 dt 3";
+constexpr const char *pale = "lc '#8fc1e3' lw 3", *heavy = "lc '#8c1d40' lw 5";
 
 std::string broken_where_empty(const std::string& place) { return "valid(" + place + ") ? column(" + place + ") : NaN"; }
 
@@ -227,14 +227,14 @@ column unrolled(const column& one, const rosin::periodic_part& source, std::size
 /// Figs. 3 to 5: recorded, calibrated by the pluck, tuned.
 void laboratory(const std::filesystem::path& folder, const stroke& s, const rosin::calibration& plucked) {
   auto force = recorded(s.truth, 3);
-  const auto c = rosin::fine_tune(plucked, force[0], force[1], limits, rate_Hz).tuned;
+  const auto c = rosin::fine_tune(plucked, part(force[0], 0.1, 0.18), part(force[1], 0.1, 0.18), limits, rate_Hz).tuned;
   for (std::size_t e = 0; e < 2; ++e)
     for (double& f : force[e]) f /= c.gain[e];
   const bow b = reconstruct(c.at, force[0], force[1]), paper = reconstruct<rosin::paper_physics>(c.at, force[0], force[1]);
   std::printf("Fig. 3: two versions of the force: Delta %.4f, with the paper's filters %.4f (paper 0.20)\n", delta(b.near_N, b.far_N), delta(paper.near_N, paper.far_N));
   auto panels = four_panels("");
   panels[1].curves.pop_back(), panels[2].curves.erase(panels[2].curves.begin() + 2);
-  write(folder, 3, stretch(0.300, 0.3042, "Fig. 3: recorded", force[0], force[1], b, s.speed_m_s).data, panels, 2);
+  write(folder, 3, stretch(0.2005, 0.2047, "Fig. 3: recorded", force[0], force[1], b, s.speed_m_s).data, panels, 2);
   panels[1].title = "(a) velocity at the bow", panels[2].title = "(b) friction force";
   write(folder, 4, stretch(0.010, 0.021, "Fig. 4: the transient", force[0], force[1], b, s.speed_m_s).data, {panels[1], panels[2]}, 1);
 
@@ -258,7 +258,7 @@ void simulation(const std::filesystem::path& folder, const stroke& s) {
   const bow b = reconstruct(at, t.force_near_N, t.force_far_N), paper = reconstruct<printed>(at, t.force_near_N, t.force_far_N);
   std::printf("Fig. 6: two versions of the force: Delta %.4f, with Eq. (6) as printed %.4f (paper 0.07)\n", delta(b.near_N, b.far_N), delta(paper.near_N, paper.far_N));
   std::printf("        their mean against the truth: Delta %.4f, with Eq. (6) as printed %.4f (paper 0.042)\n", delta(b.force_N, force), delta(paper.force_N, force));
-  window w = stretch(0.300, 0.3042, "Fig. 6: simulated, parameters known; printed: Eq. (6) as it stands", t.force_near_N, t.force_far_N, b, s.speed_m_s);
+  window w = stretch(0.2005, 0.2047, "Fig. 6: simulated, parameters known; printed: Eq. (6) as it stands", t.force_near_N, t.force_far_N, b, s.speed_m_s);
   w.add("true_m_s", velocity), w.add("true_N", force);
   auto panels = four_panels("truth");
   panels[3].curves = {{"force_N", pale, "reconstructed"}, {"true_N", black, "truth", "true_m_s"}};
@@ -271,13 +271,13 @@ void track(const std::filesystem::path& folder, const column& force, const colum
   const auto loops = rosin::slip_loops(force, surface, phases, speed, rate_Hz, 0.25);
   double far = 0, slips = 0;
   for (const auto& l : loops)
-    if (l.begin_s > 0.2) far += l.distance_m(), ++slips;
-  const double cycles = (0.35 - 0.2) * 659.69;
+    if (l.begin_s > 0.1) far += l.distance_m(), ++slips;
+  const double cycles = (0.25 - 0.1) * 659.69;
   const auto verdict = rosin::judge_loops(loops, 5 / limits.stop_Hz);
   std::printf("Fig. 8: %.2f slips a cycle, %.0f um each in the mean; loops %s\n", slips / cycles, 1e6 * far / slips,
               verdict.sense == rosin::loop_sense::counter_clockwise ? "counter-clockwise" : "without that sense");
-  const auto mm = [](column x) { const double first = x[38400]; for (double& v : x) v = 1e3 * (v - first); return x; };
-  window w(0.300, 0.3061, "Fig. 8(b): distance along the rod");
+  const auto mm = [](column x) { const double first = x[25600]; for (double& v : x) v = 1e3 * (v - first); return x; };
+  window w(0.200, 0.2061, "Fig. 8(b): distance along the rod");
   w.add("centre_mm", mm(rosin::track_along(centre, rate_Hz))), w.add("surface_mm", mm(rosin::track_along(surface, rate_Hz)));
   column slipping(surface.size(), not_known);
   for (const auto& l : loops) std::fill(slipping.begin() + static_cast<std::ptrdiff_t>(l.at.begin), slipping.begin() + static_cast<std::ptrdiff_t>(l.at.end), 0.0);
@@ -298,17 +298,17 @@ void torsion(const std::filesystem::path& folder, const stroke& s) {
   for (double& f : force[1]) f /= 0.985;
   const bow b = reconstruct(at, force[0], force[1]), paper = reconstruct<rosin::paper_physics>(at, force[0], force[1]);
   std::printf("Fig. 7: two versions of the force: Delta %.4f, with the paper's filters %.4f (paper 0.36)\n", delta(b.near_N, b.far_N), delta(paper.near_N, paper.far_N));
-  const column f = part(b.force_N, 0.15, 0.35), v = part(b.velocity_m_s, 0.15, 0.35);
+  const column f = part(b.force_N, 0.1, 0.2), v = part(b.velocity_m_s, 0.1, 0.2);
   const auto fit = rosin::fit_torsion({{f, v, rate_Hz, s.speed_m_s, at.delay_s, at.impedance_Ns_m, 1e-3, limits.stop_Hz, 0.02}});
   if (!fit) return;
   const auto& found = fit->value;
   std::printf("        torsion found: speed %.3f +- %.3f (true 8, paper near 8), impedance %.2f (3.5), Q %.1f (15)\n", found.speed_ratio, fit->sd.speed_ratio, found.impedance_ratio, found.q);
   const auto guide = rosin::torsion_of(at.delay_s, at.impedance_Ns_m, found.speed_ratio, found.impedance_ratio, found.q);
-  const column rolled = rosin::torsion_velocity(guide, part(b.force_N, 0.01, 0.35), rate_Hz);
+  const column rolled = rosin::torsion_velocity(guide, part(b.force_N, 0.01, 0.25), rate_Hz);
   column surface(b.force_N.size(), not_known), rolling = surface, centre = surface;
   for (std::size_t i = 0, n = static_cast<std::size_t>(0.01 * rate_Hz); i < rolled.size(); ++i, ++n)
     rolling[n] = rolled[i], centre[n] = b.velocity_m_s[n] - s.speed_m_s, surface[n] = centre[n] + rolled[i];
-  window w(0.300, 0.3061, "Fig. 7: velocity of the string's centre, and of its surface by rotation");
+  window w(0.200, 0.2061, "Fig. 7: velocity of the string's centre, and of its surface by rotation");
   w.add("centre_m_s", b.velocity_m_s), w.add("rolling_m_s", rolling), w.add("surface_m_s", less(surface, -s.speed_m_s));
   write(folder, 7, w.data, {{"velocity at the bow", "time_ms", "time (ms)", "velocity (m/s)", {{"centre_m_s", blue, "string (centre)"}, {"rolling_m_s", red, "surface by rotation"}}},
                             {"their sum: the surface, which sticks to the rod", "time_ms", "time (ms)", "velocity (m/s)", {{"surface_m_s", blue, ""}}}}, 1);
