@@ -126,7 +126,7 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
   carrier = std::sqrt(carrier / std::max(1.0, rows));
   tone.size_sd = std::sqrt(2 / effective) * noise / std::max(1e-12, carrier);
   tone.frequency_sd_Hz = std::sqrt(6 / effective) * noise / (std::numbers::pi * std::max(1e-9, length) * std::max(1e-12, tone.size * carrier));
-  h.parameters = {{"frequency_Hz", tone.frequency_Hz, tone.frequency_sd_Hz}, {"relative", tone.size, tone.size_sd}};
+  h.parameters = {{"frequency_Hz", tone.frequency_Hz, tone.frequency_sd_Hz}, {"relative", tone.size, std::hypot(tone.size_sd, contact_faults::ripple * tone.size)}};
   h.free_parameters = 1 + 2 * static_cast<int>(takes.size());
   h.decided = tone.size > 4 * tone.size_sd;
 }

@@ -193,7 +193,10 @@ struct family_fit {
   detail::settle_hypothesis(bench, found.fit, h);
   const double f0 = std::exp(found.theta[0]), q = std::exp(found.theta[1]), mass = found.size > 0 ? 1 / found.size : 1e9;
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-  if (sd.size() == 3) h.parameters = {{"frequency_Hz", f0, f0 * sd[1]}, {"q", q, q * sd[2]}, {"mass_kg", mass, mass * mass * sd[0]}};
+  if (sd.size() == 3)
+    h.parameters = {{"frequency_Hz", f0, f0 * std::hypot(sd[1], contact_faults::rod_frequency)},
+                    {"q", q, q * std::hypot(sd[2], contact_faults::rod_q)},
+                    {"mass_kg", mass, mass * std::hypot(mass * sd[0], contact_faults::rod_mass)}};
   h.decided = found.size > 0 && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 79;  // inside the range that was searched
   return h;
 }
@@ -223,7 +226,7 @@ struct family_fit {
   const double stiffness = found.size > 0 ? 1e6 / found.size : 1e12, delay = std::exp(found.theta[0]);
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   const double doubt = sd.size() == 2 ? std::hypot(sd[0], other) : 1e3;
-  h.parameters = {{"bristle_stiffness_N_m", stiffness, stiffness * stiffness * 1e-6 * doubt}, {"bristle_delay_s", delay, sd.size() == 2 ? delay * sd[1] : delay}};
+  h.parameters = {{"bristle_stiffness_N_m", stiffness, stiffness * std::hypot(stiffness * 1e-6 * doubt, contact_faults::bristles)}, {"bristle_delay_s", delay, sd.size() == 2 ? delay * sd[1] : delay}};
   h.decided = found.size > 3 * doubt;
   return h;
 }

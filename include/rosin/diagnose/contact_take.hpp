@@ -48,6 +48,12 @@ struct contact_model {
   std::optional<double> speed_ripple_Hz{}, normal_ripple_Hz{};
 };
 
+/// By how much the contact's parameters come out wrong beside what noise does, as a share of each: what band, gains and torsion leave in a
+/// reconstruction. Found on strokes of another simulator (rosin challenge), where noise alone would have given a tenth of it.
+namespace contact_faults {
+inline constexpr double rod_frequency = 6e-4, rod_q = 0.012, rod_mass = 0.013, ripple = 0.009, bristles = 0.035;
+}
+
 struct contact_parameter {
   std::string name;  ///< as in the catalogue
   double value = 0, sd = 0;

@@ -5,6 +5,7 @@
 // each time the one that explains most, as long as it is worth it:
 //
 //     significance   the gain in ln L, divided by the misfit that is left (model error counts as noise), is at least 14;
+//     prediction     it gains 3 on takes that were set aside, where it does not gain very much in all;
 //     worth          a further effect takes away at least two thirds of what the model so far leaves beyond the noise, and that is
 //                    at least a hundredth (in amplitude) of what there was to explain: no model of a bead is exact either.
 //
@@ -110,11 +111,11 @@ inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, doub
   return m;
 }
 
-/// rms residual / rms recorded of a take that was not fitted; and the noise's share.
-inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise) {
+/// Of a take that was not fitted: rms residual / rms recorded; the noise's share; samples.
+inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise) {
   scene_data one{{held}, data.guess, data.options, pluck_layout({held}, data.options)};
   const auto start = find_start(one.takes, data.guess);
-  if (!start) return {1, 0};
+  if (!start) return {1, 0, 0};
   Eigen::VectorXd v(one.layout.size());
   v.head(pluck_layout::first_position) = fit.value.head(pluck_layout::first_position);
   std::size_t nearest = 0;
@@ -147,7 +148,20 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
   for (const auto& part : {problem.part(0, 0), problem.part(0, 1)})
     for (const auto& d : part.data) power += d.squaredNorm(), samples += static_cast<double>(d.size());
   const double mean_square = (seen.quality.samples[0] + seen.quality.samples[1]) / std::max(1.0, samples);
-  return {seen.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power))};
+  return {seen.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power)), samples};
+}
+
+/// By how much ln L of the takes in `held` is higher with the last effect of a fit than without it, misfit counted as noise.
+inline double held_out_gain(const scene_data& data, const scene_fit& fit, const std::vector<pluck_take>& held, double noise) {
+  scene_fit less = without(data, fit, fit.effects.size() - 1);
+  less = fit_scene(data, less.effects, less.value, {{1000, fit.horizon_periods, true}}, {noise, noise});
+  less.horizon_periods = fit.horizon_periods;
+  double gain = 0;
+  for (const pluck_take& take : held) {
+    const auto b = predicted(data, less, take, noise), a = predicted(data, fit, take, noise);
+    gain += 0.5 * a[2] * (b[0] * b[0] - a[0] * a[0]) / std::max(a[1] * a[1], a[0] * a[0]);
+  }
+  return gain;
 }
 
 }  // namespace detail
@@ -206,10 +220,19 @@ inline std::array<double, 2> predicted(const scene_data& data, const scene_fit& 
   }
   d.best = exchanged(d.data, now, all, 1, noise);
   if (d.best.quality.residual_ratio.empty()) d.best = d.base;
+  const double typical = std::sqrt((noise[0] * noise[0] + noise[1] * noise[1]) / 2);
+  // What is real shows in takes that were not fitted, too: half of what it must gain in the others, at least.
+  while (!held.empty() && !d.best.effects.empty() && d.found_gain[d.best.effects.size() - 1] < 200 && detail::held_out_gain(d.data, d.best, held, typical) < 3) {
+    const double horizon = d.best.horizon_periods;
+    scene_fit less = detail::without(d.data, d.best, d.best.effects.size() - 1);
+    d.best = fit_scene(d.data, less.effects, less.value, {{1000, horizon, true, freedom::all}}, {typical, typical});
+    d.found_gain.resize(d.best.effects.size());
+    d.alternatives.clear();
+  }
+  d.mismatched = d.mismatched && !d.best.effects.empty();
   std::sort(d.ranking.begin(), d.ranking.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
   if (!d.ranking.empty())
     for (double top = d.ranking.front().log_evidence; auto& h : d.ranking) h.log_evidence -= top;
-  const double typical = std::sqrt((noise[0] * noise[0] + noise[1] * noise[1]) / 2);
   d.mismatch = detail::locate(d.data, d.base, typical);
 
   double before2 = 0, after2 = 0, floor2 = 0;

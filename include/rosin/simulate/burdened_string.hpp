@@ -116,6 +116,17 @@ public:
     return out;
   }
 
+  /// After advance() with these forces at the contacts: they are gone at once. Returns by how much the forces on the ends fall with
+  /// them, which is the share of the modes left out.
+  Eigen::Vector2d let_go(const Eigen::VectorXd& force) {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(contacts_ + unknowns());
+    all.head(contacts_) = force;
+    bank_.let_go(all);
+    last_.head(contacts_) -= force;
+    read();
+    return rest_end_ * all;
+  }
+
 private:
   struct moving_load {
     point_load load;

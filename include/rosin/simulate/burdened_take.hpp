@@ -40,11 +40,8 @@ struct burdened_pluck {
   return into < p.release_duration_s ? p.force_N * (1 + std::cos(pi * into / p.release_duration_s)) / 2 : 0;
 }
 
-/// The same as steps see it that are straight lines: at once means within the step that has the release in its middle.
-[[nodiscard]] inline double wire_force(const burdened_pluck& p, double t, double step_s) noexcept {
-  return p.release_duration_s > 0 ? wire_force(p, t) : p.force_N * std::clamp((p.release_s - t) / step_s + 0.5, 0.0, 1.0);
-}
-
+/// A sudden release happens at the step nearest to it, and there at once: were it spread over a step, every pluck's spectrum would fall
+/// towards high frequencies by another amount (a thousandth at 50 kHz and 0.5 us), as no two releases lie alike between the steps.
 [[nodiscard]] inline burdened_steps step_pluck(const modal_rig& rig, const string_burden& burden, const burdened_pluck& pluck, double duration_s, double mode_limit_Hz,
                                                double step_s) {
   burdened_string string{rig, burden, {pluck.position}, mode_limit_Hz, step_s};
@@ -52,10 +49,13 @@ struct burdened_pluck {
   burdened_steps out{.step_s = step_s, .centre_left_out_m_N = string.centre_left_out_m_N()[0]};
   const auto steps = static_cast<std::size_t>(duration_s / step_s);
   out.reserve(steps);
+  const bool sudden = !(pluck.release_duration_s > 0);
+  const auto release = static_cast<std::size_t>(std::lround(std::max(0.0, pluck.release_s / step_s)));
   for (std::size_t n = 0; n < steps; ++n) {
-    const double force = wire_force(pluck, static_cast<double>(n) * step_s, step_s);
+    double force = sudden ? (n <= release ? pluck.force_N : 0) : wire_force(pluck, static_cast<double>(n) * step_s);
     (void)string.free_velocity();
-    const auto now = string.advance(Eigen::VectorXd::Constant(1, force));
+    auto now = string.advance(Eigen::VectorXd::Constant(1, force));
+    if (sudden && n == release) now.end_N -= 0.5 * string.let_go(Eigen::VectorXd::Constant(1, force)), force /= 2;  // the middle of a jump
     for (std::size_t e = 0; e < 2; ++e) out.end_N[e].push_back(now.end_N[static_cast<Eigen::Index>(e)]);
     out.force_N.push_back(force);
     out.centre_m_s.push_back(now.surface_m_s[0] - now.twist_m_s[0]);

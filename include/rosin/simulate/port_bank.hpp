@@ -88,6 +88,12 @@ public:
     im_ = turn_im_ * re_ + turn_re_ * im_ + push_im_ * drive_;
     re_.swap(now_re_);
   }
+  /// After advance() with these forces: from now on they are gone, at once, and not over a step.
+  void let_go(const Eigen::VectorXd& force) {
+    drive_.matrix().noalias() = shape_ * force;
+    re_ -= (push_re_ - turn_re_ * once_re_ + turn_im_ * once_im_) * drive_;
+    im_ -= (push_im_ - turn_im_ * once_re_ - turn_re_ * once_im_) * drive_;
+  }
   /// At rest under these forces.
   void rest_under(const Eigen::VectorXd& force) {
     const Eigen::ArrayXd f = (shape_ * force).array(), stiffness = mass * omega.square();
