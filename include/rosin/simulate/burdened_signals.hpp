@@ -98,7 +98,9 @@ inline void add_plane(burdened_steps& along, const burdened_steps& across, doubl
   if (!(pluck.release_s > 0 && pluck.release_s < pluck.duration_s)) return failure{"pluck: the release must lie within the take"};
   if (!(pluck.release_duration_s >= 0 && pluck.release_duration_s <= 0.1)) return failure{"pluck: the release must last for 0.1 s at most"};
   const detail::burdened_steps_of_take how{settings, pluck.duration_s};
-  const burdened_pluck wire{pluck.position, pluck.force_N, pluck.release_s + how.lead_s, pluck.release_duration_s};
+  // A sudden release falls on a step; how much later it was meant to be, the whole take is.
+  const double meant = (pluck.release_s + how.lead_s) / how.step_s, stepped = pluck.release_duration_s > 0 ? meant : std::round(meant);
+  const burdened_pluck wire{pluck.position, pluck.force_N, stepped * how.step_s, pluck.release_duration_s};
   auto steps = step_pluck(rig, burden.string, wire, how.duration_s(), how.limit_Hz, how.step_s);
   if (burden.coupling != 0) {
     auto other = rig;
@@ -106,6 +108,8 @@ inline void add_plane(burdened_steps& along, const burdened_steps& across, doubl
     other.string.tension_N *= std::pow(1 + burden.detuning, 2);
     detail::add_plane(steps, step_pluck(other, burden.string, wire, how.duration_s(), how.limit_Hz, how.step_s), burden.coupling);
   }
+  if (meant != stepped)
+    for (auto* signal : {&steps.end_N[0], &steps.end_N[1], &steps.force_N, &steps.centre_m_s}) *signal = detail::later(*signal, meant - stepped);
   disturb(steps.end_N, burden.sensors, how.step_s);
   return how.sampled(steps, settings.sample_rate_Hz);
 }

@@ -59,9 +59,9 @@ TEST_CASE("without a burden plucks and strokes are those of the ideal rig") {
 TEST_CASE("plucks of a string on a bridge and a nut that move are those of component modes") {
   const test::moving_end_rig peer{string, ends};
   const double half_step = 0.5 / (same.rate_Hz * same.oversampling);  // where the other's slope of one step has its middle
-  const auto one = rosin::simulate_pluck(rig, on_these(), {.position = 0.3, .force_N = 1, .release_s = 0.004 + half_step, .duration_s = 0.06}, settings);
+  const auto one = rosin::simulate_pluck(rig, on_these(), {.position = 0.3, .force_N = 1, .release_s = 0.004 + half_step, .duration_s = 0.03}, settings);
   REQUIRE(one);
-  const auto other = test::pluck_moving_ends(peer, 0.3, 1, 0.004 + half_step, 0.06, same);
+  const auto other = test::pluck_moving_ends(peer, 0.3, 1, 0.004 + half_step, 0.03, same);
   CHECK(apart(one->force_near_N, other.near_N) < 2e-3);
   CHECK(apart(one->force_far_N, other.far_N) < 2e-3);
   CHECK(apart(one->centre_velocity_m_s, other.velocity_m_s) < 1e-3);
@@ -71,15 +71,15 @@ TEST_CASE("a bowed string on a body runs free as component modes say") {
   const test::moving_end_rig peer{string, ends};
   const rosin::velocity_curve<rosin::two_exponential_curve<double>> law{};
   const rosin::steady_rod rod{.speed_m_s = 0.2, .normal_force_N = 0.3};
-  const auto one = rosin::simulate_stroke(rig, on_these(), law, rod, {.position = 0.3, .duration_s = 0.06}, settings);
+  const auto one = rosin::simulate_stroke(rig, on_these(), law, rod, {.position = 0.3, .duration_s = 0.03}, settings);
   REQUIRE(one);
-  const auto other = test::bow_moving_ends(peer, 0.3, law, rod, 0.06, same);
+  const auto other = test::bow_moving_ends(peer, 0.3, law, rod, 0.03, same);
   CHECK(one->slips > 20);
   CHECK(apart(one->contact_force_N, other.force_N) < 1e-3);
   CHECK(apart(one->centre_velocity_m_s, other.velocity_m_s) < 1e-3);
   CHECK(apart(one->force_near_N, other.near_N) < 3e-3);
   CHECK(apart(one->force_far_N, other.far_N) < 3e-3);
-  const auto rigid = rosin::simulate_stroke(rig, law, rod, {.position = 0.3, .duration_s = 0.06}, settings);
+  const auto rigid = rosin::simulate_stroke(rig, law, rod, {.position = 0.3, .duration_s = 0.03}, settings);
   REQUIRE(rigid);
   CHECK(apart(rigid->contact_force_N, other.force_N) > 0.3);
 }
