@@ -12,7 +12,16 @@ namespace rosin {
 
 namespace detail {
 
-/// The pitch of the ringing against the declared one, and how long it lasts.
+/// Within 0.8 % of a rate that converters have: what a wrong header would turn a sound recording into.
+[[nodiscard]] inline bool is_usual_rate(double rate_Hz) {
+  for (const double family : {44100.0, 48000.0, 50000.0, 51200.0, 65536.0, 64000.0})
+    for (double r = family / 8; r < 1e6; r *= 2)
+      if (std::abs(rate_Hz / r - 1) < 0.008) return true;
+  return false;
+}
+
+/// The pitch of the ringing against the declared one, and how long it lasts. A pitch that is off is an error where it looks like a wrong sampling
+/// rate or like another string; a bead can lower it by a tenth.
 inline void check_ringing(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
   const double rate = view.signals->sample_rate_Hz;
   const std::span<const double> tail{s.values.data() + start, s.values.size() - start};
@@ -29,11 +38,14 @@ inline void check_ringing(take_check& out, const pluck_view& view, const take_si
   if (found->score < 0.3)
     out.add(severity::warning, "not-periodic", s.sensor.name, t, out.duration_s, "the ringing is no harmonic series near the declared pitch",
             "check fundamental_Hz and what else sounds");
-  else if (std::abs(off) > limit)
-    out.add(std::abs(off) > 0.03 ? grade : severity::warning, "wrong-pitch", s.sensor.name, t, out.duration_s,
+  else if (std::abs(off) > limit) {
+    const double as_if_Hz = rate / (1 + off);
+    const bool rate_is_wrong = is_usual_rate(as_if_Hz);
+    out.add(std::abs(off) > 0.2 || (std::abs(off) > 0.03 && rate_is_wrong) ? grade : severity::warning, "wrong-pitch", s.sensor.name, t, out.duration_s,
             "rings at " + figure(found->pitch_Hz, "%.2f") + " Hz, fundamental_Hz is " + figure(view.fundamental_Hz, "%.2f") +
-                ": as if recorded at " + figure(rate / (1 + off), "%.0f") + " samples a second",
-            "check the sample rate in the file's header and fundamental_Hz");
+                (rate_is_wrong ? ": as if recorded at " + figure(as_if_Hz, "%.0f") + " samples a second" : std::string{}),
+            rate_is_wrong ? "check the sample rate in the file's header and fundamental_Hz" : "check fundamental_Hz, and whether something sits on the string");
+  }
   out.pitch_Hz = found->pitch_Hz;
 }
 
