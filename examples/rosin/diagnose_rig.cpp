@@ -9,7 +9,8 @@ namespace tool {
 namespace {
 
 constexpr int most_contact_effects = 2;
-constexpr double further_contact_share = 0.05;  ///< of what was gained so far: no model of a contact is exact either
+constexpr double further_tone_share = 0.05;     ///< of what was gained so far: no model of a contact is exact either,
+constexpr double further_give_share = 0.2;      ///< and what one model of its give leaves another one takes up
 constexpr double drift_fault = 3e-4;           ///< beside noise, by what else the two versions part; found on rigs of another simulator
 
 missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, const rosin::rig_values& values) {
@@ -165,7 +166,10 @@ bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d)
   if (nothing) return false;
   const auto& best = found.hypotheses.front();
   if (!best.decided || best.gain <= found.threshold || best.held_out_gain <= found.threshold / 2) return false;
-  if (best.gain < further_contact_share * sofar) return false;
+  const bool gives = best.statistic == "stick-fluctuation" && best.effect != "speed-ripple";
+  if (best.gain < (gives ? further_give_share : further_tone_share) * sofar) return false;
+  // What explains far more, but with parameters that the strokes leave open, forbids to name the lesser.
+  if (std::any_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return !h.decided && h.gain > 2 * best.gain && h.gain > found.threshold; })) return false;
   const double second = found.hypotheses.size() > 1 ? found.hypotheses[1].gain : 0;
   missing_effect m = described(best, 1 - std::exp(-std::min(30.0, best.gain - std::max(0.0, second))));
   for (std::size_t i = 1; i < found.hypotheses.size(); ++i)
