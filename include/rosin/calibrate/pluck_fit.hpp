@@ -129,9 +129,10 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
 
 }  // namespace detail
 
-/// Fits `takes` together. Fails, with the take and the reason, where no release is found or the string does not ring as declared.
+/// Fits `takes` together. Fails, with the take and the reason, where no release is found or the string does not ring as declared, that is,
+/// where more than `most_residual` of the signal (rms) is left.
 [[nodiscard]] inline outcome<pluck_fit_result> fit_plucks(const std::vector<pluck_take>& takes, const pluck_guess& guess,
-                                                          const pluck_options& options = {}) {
+                                                          const pluck_options& options = {}, double most_residual = 0.6) {
   outcome<pluck_start> start = find_start(takes, guess);
   if (!start) return failure{start.error()};
   pluck_fit_result result;
@@ -152,7 +153,7 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
     if (detail::worst(result) < 0.1) break;
   }
   const double worst = detail::worst(result);
-  if (worst > 0.6)
+  if (worst > most_residual)
     return failure{takes.front().name + ": the plucks do not ring as the declared string should (residual " +
                    std::to_string(static_cast<int>(100 * worst)) + " % of the signal): check pitch, position, channels and rate"};
   return result;

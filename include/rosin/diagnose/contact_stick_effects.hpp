@@ -96,19 +96,21 @@ struct family_fit {
 };
 
 /// Gauss-Newton on a family of transfer functions added to the declared equation; theta stays between `low` and `high`.
-/// `other_compliance`: the terms C1, C3 are not free, C1 is this (in micrometres a newton) and C3 zero.
+/// `other_compliance`: the terms C1, C3 are not free, C1 is this (in micrometres a newton) and C3 zero. `share`: how much of the column
+/// each take has (empty: all of it).
 [[nodiscard]] inline family_fit fit_family(stick_bench& bench, const transfer_family& family, Eigen::VectorXd theta, double size, const Eigen::VectorXd& low,
-                                           const Eigen::VectorXd& high, int steps, std::optional<double> other_compliance = {}) {
+                                           const Eigen::VectorXd& high, int steps, std::optional<double> other_compliance = {}, const std::vector<double>& share = {}) {
   family_fit out{.theta = theta, .size = size, .covariance = {}};
   for (int step = 0; step <= steps; ++step) {
     stick_design d = bench.declared();
     for (std::size_t t = 0; t < d.rows.size(); ++t) {
       auto& record = bench.records()[t];
-      d.add_shared(t, record.force_through([&](double f) { return family(out.theta, f); }));
+      const double own = share.empty() ? 1.0 : share[t];
+      d.add_shared(t, record.force_through([&](double f) { return own * family(out.theta, f); }));
       for (Eigen::Index k = 0; k < theta.size(); ++k) {
         Eigen::VectorXd up = out.theta, down = out.theta;
         up[k] += 2e-3, down[k] -= 2e-3;
-        d.add_shared(t, record.force_through([&](double f) { return out.size / 4e-3 * (family(up, f) - family(down, f)); }));
+        d.add_shared(t, record.force_through([&](double f) { return own * out.size / 4e-3 * (family(up, f) - family(down, f)); }));
       }
     }
     if (other_compliance) d.bounds[0] = {*other_compliance, *other_compliance}, d.bounds[1] = {0, 0};
@@ -201,8 +203,9 @@ struct family_fit {
   return h;
 }
 
-/// The contact yields elastically before it slides: a compliance, with a delay of its own.
-[[nodiscard]] inline contact_hypothesis bristle_hypothesis(stick_bench& bench) {
+/// The contact yields elastically before it slides: a compliance, with a delay of its own. `softer`: each take's compliance against the
+/// stated one, where stiffness goes with the normal force (empty: all alike).
+[[nodiscard]] inline contact_hypothesis bristle_hypothesis(stick_bench& bench, const std::vector<double>& softer = {}) {
   contact_hypothesis h{.effect = "elasto-plastic-friction"};
   h.free_parameters = 2;
   const detail::transfer_family family = [](const Eigen::VectorXd& theta, double f) {
@@ -210,18 +213,28 @@ struct family_fit {
     return -1e-6 * s / (1.0 + s * std::exp(theta[0]));
   };
   constexpr double other = 0.7;  // micrometres a newton, less: what contacts are known to yield besides, and how sure that is
-  const detail::explained quick(bench.declared(), bench.fit().solution);
+  // What bristles yield is to first order what the declared equation's own compliance terms are: the search goes without these.
+  stick_design bare = bench.declared();
+  for (auto& rows : bare.rows) {
+    rows.target += other * rows.shared.col(0);
+    rows.shared.leftCols(2).setZero();
+  }
+  stick_prior held;
+  const detail::explained quick(bare, bounded_regression(bare, bench.floor_m_s(), held));
   double best = 0, delay_best = 1e-6, size_best = 1;
   for (double delay = 1.25e-7; delay < 5e-5; delay *= 2) {
     std::vector<std::vector<double>> column;
-    for (auto& r : bench.records()) column.push_back(r.force_through([&](double f) { return family(Eigen::VectorXd::Constant(1, std::log(delay)), f); }));
+    for (auto& r : bench.records()) {
+      const double own = softer.empty() ? 1.0 : softer[column.size()];
+      column.push_back(r.force_through([&](double f) { return own * family(Eigen::VectorXd::Constant(1, std::log(delay)), f); }));
+    }
     double size = 0;
     const double gain = quick.by(column, size);
     if (size > 0 && gain > best) best = gain, delay_best = delay, size_best = size;
   }
   if (!(best > 0)) return detail::nothing(bench, h);
   const auto found = detail::fit_family(bench, family, Eigen::VectorXd::Constant(1, std::log(delay_best)), size_best,
-                                       Eigen::VectorXd::Constant(1, std::log(3e-8)), Eigen::VectorXd::Constant(1, std::log(1e-4)), 5, -other);
+                                       Eigen::VectorXd::Constant(1, std::log(3e-8)), Eigen::VectorXd::Constant(1, std::log(1e-4)), 5, -other, softer);
   detail::settle_hypothesis(bench, found.fit, h);
   const double stiffness = found.size > 0 ? 1e6 / found.size : 1e12, delay = std::exp(found.theta[0]);
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();

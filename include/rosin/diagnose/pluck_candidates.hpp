@@ -9,10 +9,8 @@
 //
 #pragma once
 
-#include <rosin/calibrate/end_fit.hpp>
 #include <rosin/diagnose/pluck_effects.hpp>
-#include <rosin/diagnose/pluck_score.hpp>
-#include <rosin/diagnose/scene_fit.hpp>
+#include <rosin/diagnose/strong_starts.hpp>
 
 #include <optional>
 
@@ -52,8 +50,8 @@ inline std::vector<scored_start> best_starts(const pluck_score& test, const scen
       const effect_parameter& p = e.parameters[i];
       if (p.low >= 0 && s.mix <= 0) one.gain = 0;
       one.values[i] = std::clamp(start[i] * s.mix, p.low, p.high);
-    } else {  // taken as it stands: what it gains at mix 1, on the parabola through 0 and mix
-      one.gain = s.mix > 0 ? std::max(0.0, s.gain * (2 / s.mix - 1 / (s.mix * s.mix))) : 0.0;
+    } else {
+      one.gain = gain_as_it_stands(s);
     }
     all.push_back(one);
   }
@@ -72,13 +70,6 @@ inline void note_foremost(const std::vector<double>& gains, std::size_t most, st
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gains[a] > gains[b]; });
   for (std::size_t k = 0; k < std::min(most, order.size()); ++k)
     if (gains[order[k]] > 0) foremost[order[k]] = true;
-}
-
-inline Eigen::VectorXd extended(const Eigen::VectorXd& value, const pluck_effect& e, const std::vector<double>& start) {
-  Eigen::VectorXd v(value.size() + static_cast<Eigen::Index>(start.size()));
-  v.head(value.size()) = value;
-  for (std::size_t i = 0; i < start.size(); ++i) v[value.size() + static_cast<Eigen::Index>(i)] = to_fitted(e.parameters[i], start[i]);
-  return v;
 }
 
 inline std::vector<pluck_effect> with_one_more(std::vector<pluck_effect> effects, const pluck_effect& e) {
@@ -140,34 +131,6 @@ inline beginnings find_beginnings(const scene_data& data, const scene_fit& alrea
   return out;
 }
 
-/// A way to begin that another method has found: all of the values, for the effect with that id.
-struct found_start {
-  std::string id;
-  Eigen::VectorXd value;
-};
-
-/// A support's mode as the fit along a line of complex frequencies sees it (calibrate/end_fit.hpp), which no strong coupling leads
-/// astray; for either end, whichever it chose. It knows of no other effect.
-inline std::vector<found_start> support_starts(const scene_data& data, const std::vector<pluck_effect>& catalogue) {
-  std::vector<found_start> out;
-  const auto supports = [](const pluck_effect& e) { return e.name == "support-resonance"; };
-  if (std::none_of(catalogue.begin(), catalogue.end(), supports)) return out;
-  end_options one;
-  one.most_modes = 1;
-  const auto fitted = fit_ends(data.takes, data.guess, data.options, one);
-  if (!fitted || fitted->modes.empty() || fitted->plucks.value.size() != data.layout.size()) return out;
-  const admittance_mode& mode = fitted->modes.front().mode;
-  for (const pluck_effect& e : catalogue) {
-    if (!supports(e)) continue;
-    pluck_scene probe;
-    const std::array<double, 3> unit{1000, 10, 1};
-    e.apply(probe, unit.data(), 0);
-    const double per_mass = probe.ends[static_cast<std::size_t>(e.place)].modes.front().per_mass_per_s;
-    out.push_back({e.id(), extended(fitted->plucks.value, e, {mode.frequency_Hz, mode.q, mode.per_mass_per_s / per_mass})});
-  }
-  return out;
-}
-
 /// The best of several ways to one effect. Where the model is far off: from the first partials of the first periods on, every start
 /// for two short stages and the best of them further; and all partials at once.
 inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fit& already, const pluck_effect& e, const std::vector<scored_start>& starts,
@@ -189,7 +152,7 @@ inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fi
   const auto highest = std::max_element(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
   if (highest != starts.end()) further.push_back(fit_scene(data, effects, from(*highest), {{1000, 12, true}}, noise));
   for (const found_start& f : found)
-    if (f.id == e.id()) further.push_back(fit_scene(data, effects, f.value, {{1000, 3, true}, {1000, 12, true}}, noise));
+    if (f.id == e.id()) further.push_back(fit_scene(data, effects, f.value, {{1000, 1.5, true}, {1000, 3, true}, {1000, 12, true}}, noise));
   best.reset();
   for (auto& f : further) keep(std::move(f));
   return best;
@@ -218,7 +181,7 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
 [[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
                                                             bool strong, std::array<double, 2> noise) {
   const detail::beginnings begin = detail::find_beginnings(data, already, catalogue, strong, noise);
-  const std::vector<detail::found_start> found = strong && already.effects.empty() ? detail::support_starts(data, catalogue) : std::vector<detail::found_start>{};
+  const std::vector<detail::found_start> found = strong && already.effects.empty() ? detail::strong_starts(data, already, catalogue, noise) : std::vector<detail::found_start>{};
   const auto is_found = [&](const pluck_effect& e) { return std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.id == e.id(); }); };
   std::vector<scene_fit> fits;
   for (std::size_t i = 0; i < catalogue.size(); ++i)

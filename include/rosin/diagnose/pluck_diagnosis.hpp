@@ -170,11 +170,13 @@ inline double held_out_gain(const scene_data& data, const scene_fit& fit, const 
 [[nodiscard]] inline outcome<pluck_diagnosis> diagnose_plucks(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
                                                               const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
                                                               int most_effects = 3) {
-  auto declared = fit_plucks(takes, guess, options);
+  constexpr double most_residual = 0.95;  // a heavy bead leaves little of the declared string
+  auto declared = fit_plucks(takes, guess, options, most_residual);
   if (!declared) return failure{declared.error()};
   pluck_diagnosis d{{takes, guess, options, declared->layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
   const std::array<double, 2> weigh = declared->noise_N;
   scene_fit now{{}, declared->value, declared->sd, declared->covariance, {}, {}, declared->horizon_periods, 0, true};
+  now.quality.residual_ratio = declared->residual_ratio;
   const std::vector<pluck_effect> all = catalogue_for(*declared);
   std::array<double, 2> noise{1e300, 1e300};
   double all_there_was = 0;
@@ -219,7 +221,7 @@ inline double held_out_gain(const scene_data& data, const scene_fit& fit, const 
     if (now.quality.inflation() == 1.0 && round > 0) break;
   }
   d.best = exchanged(d.data, now, all, 1, noise);
-  if (d.best.quality.residual_ratio.empty()) d.best = d.base;
+  if (d.best.effects.empty()) d.best = d.base;
   const double typical = std::sqrt((noise[0] * noise[0] + noise[1] * noise[1]) / 2);
   // What is real shows in takes that were not fitted, too: half of what it must gain in the others, at least.
   while (!held.empty() && !d.best.effects.empty() && d.found_gain[d.best.effects.size() - 1] < 200 && detail::held_out_gain(d.data, d.best, held, typical) < 3) {

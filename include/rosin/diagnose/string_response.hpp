@@ -11,7 +11,10 @@
 //
 // (specification sheet 1.4; M, A, S are one another's by reciprocity, A from -B y''' + T y'). Scatterers and ends close the loop:
 // a small linear system whose determinant vanishes at the poles. Newton from the pinned string's poles, strength raised in steps.
-// Loss enters k as in transmission.hpp, so its convention is the hysteretic one; the fit's psi takes up the difference.
+// Loss enters k as in transmission.hpp. What it makes of the impedance is a matter of convention, and a heavy bead tells: with every mode
+// damped by itself, i w w_m / Q, the loss sits half in the tension and half in the mass, T (1 + i / 2Q), but for
+//     sum_m phi_m^2 i w (i / 2Q) (w_m - w)^2 / (w_m^2 - w^2)^2  =  -1 / (2 pi Q Z)   at the load itself (twice that, times Z^2, at an end),
+// and what the ends feel of the damping, which the fit's psi takes up.
 //
 #pragma once
 
@@ -54,6 +57,7 @@ public:
     q_ = phase_rate(w, complex(epsilon));
     const double f = std::abs(s.imag()) / (2 * std::numbers::pi), real_w = 2 * std::numbers::pi * f;
     q_ -= complex(0, real_w * scene.string.loss.inverse_q(f) / 2 * slowness_ratio(real_w, epsilon));
+    modulus_ = complex(1, scene.string.loss.inverse_q(f) / 2);
     K_ = epsilon * q_ * q_;
     kappa_ = std::sqrt(q_ * q_ + 1 / epsilon);
     epsilon_ = epsilon;
@@ -66,7 +70,8 @@ public:
   [[nodiscard]] complex mobility(double a, double b) const {
     const double low = std::min(a, b) * length_, high = (1 - std::max(a, b)) * length_, gap = length_ - low - high;
     const complex decay = (fading(gap) - fading(gap + 2 * low) - fading(gap + 2 * high)) / 2.0;
-    return s_ * stiff_ * (sine_of(low) * sine_of(high) * detail::reciprocal(q_) - sine_ * decay * detail::reciprocal(kappa_));
+    const complex m = s_ / modulus_ * stiff_ * (sine_of(low) * sine_of(high) * detail::reciprocal(q_) - sine_ * decay * detail::reciprocal(kappa_));
+    return a == b ? m - own_loss() * sine_ : m;
   }
   /// sin(qL) times the force on end 0 or 1 for a unit force at a.
   [[nodiscard]] complex end_force(int end, double a) const {
@@ -75,21 +80,23 @@ public:
   }
   /// sin(qL) times the force (in Z) on an end per unit speed of the same end, and of the other end.
   [[nodiscard]] complex own_end() const {
-    return -kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * (kappa_ * kappa_ * kappa_ * cosine_ - q_ * q_ * q_ * sine_);
+    return -modulus_ * kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * (kappa_ * kappa_ * kappa_ * cosine_ - q_ * q_ * q_ * sine_) - 2.0 * own_loss() * sine_;
   }
   [[nodiscard]] complex other_end() const {
-    return kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * kappa_ * kappa_ * kappa_;
+    return modulus_ * kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * kappa_ * kappa_ * kappa_;
   }
   [[nodiscard]] complex sine() const { return sine_; }
 
 private:
+  /// 1 / (2 pi Q)
+  [[nodiscard]] double own_loss() const { return modulus_.imag() / std::numbers::pi; }
   [[nodiscard]] complex sine_of(double time) const { return detail::sine_cosine(q_ * time).sine; }
   /// The near field at that distance.
   [[nodiscard]] complex fading(double time) const { return kappa_.real() * time > 40 ? complex(0) : std::exp(-kappa_ * time); }
 
   complex s_;
   double length_, epsilon_ = 0;
-  complex q_, K_, kappa_, sine_, cosine_, stiff_;
+  complex modulus_, q_, K_, kappa_, sine_, cosine_, stiff_;
 };
 
 /// Scatterers and yielding ends together.
