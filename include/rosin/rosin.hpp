@@ -164,6 +164,7 @@
 #include <rosin/diagnose/corrected_take.hpp>
 #include <rosin/diagnose/friction_laws.hpp>
 #include <rosin/diagnose/isolability.hpp>
+#include <rosin/diagnose/law_choice.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/pluck_candidates.hpp>

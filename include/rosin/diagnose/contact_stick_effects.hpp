@@ -239,7 +239,7 @@ struct family_fit {
   const double stiffness = found.size > 0 ? 1e6 / found.size : 1e12, delay = std::exp(found.theta[0]);
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   const double doubt = sd.size() == 2 ? std::hypot(sd[0], other) : 1e3;
-  h.parameters = {{"bristle_stiffness_N_m", stiffness, stiffness * std::hypot(stiffness * 1e-6 * doubt, contact_faults::bristles)}, {"bristle_delay_s", delay, sd.size() == 2 ? delay * sd[1] : delay}};
+  h.parameters = {{"bristle_stiffness_N_m", stiffness, stiffness * std::hypot(stiffness * 1e-6 * doubt, contact_faults::bristles)}, {"bristle_delay_s", delay, sd.size() == 2 && sd[1] > 1e-6 ? delay * sd[1] : delay}};
   h.decided = found.size > 3 * doubt;
   return h;
 }
