@@ -131,14 +131,10 @@ private:
 
   static stretch cut(const pluck_take& take, const fir& kernel, int begin, int end) {
     stretch s{begin / take.rate_Hz, {}};
+    const Eigen::VectorXd taps = Eigen::VectorXd::Map(kernel.taps.data(), static_cast<Eigen::Index>(kernel.taps.size())).reverse();
     for (std::size_t c = 0; c < 2; ++c) {
       s.data[c].resize(std::max(0, end - begin));
-      for (int i = begin; i < end; ++i) {
-        double sum = 0;
-        for (int j = kernel.first; j <= kernel.last(); ++j)
-          sum += kernel.taps[static_cast<std::size_t>(j - kernel.first)] * take.force_N[c][static_cast<std::size_t>(i - j)];
-        s.data[c][i - begin] = sum;
-      }
+      for (int i = begin; i < end; ++i) s.data[c][i - begin] = taps.dot(Eigen::VectorXd::Map(take.force_N[c].data() + (i - kernel.last()), taps.size()));
     }
     return s;
   }

@@ -10,14 +10,18 @@
 //
 #pragma once
 
+#include <rosin/math/lane_fft.hpp>
 #include <rosin/propagate/band.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <concepts>
 #include <cstddef>
 #include <numbers>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace rosin {
@@ -31,14 +35,15 @@ struct fir {
 
   /// Frequency response at `frequency_Hz`, for a sampling rate.
   [[nodiscard]] std::complex<double> response(double frequency_Hz, double rate_Hz) const {
-    const double turn = -2 * std::numbers::pi * frequency_Hz / rate_Hz;
-    const std::complex<double> step = std::polar(1.0, turn);
-    std::complex<double> z = 1, sum = 0;
-    for (std::size_t j = 0; j < taps.size(); ++j, z *= step) {
-      if (j % 64 == 0) z = std::polar(1.0, turn * static_cast<double>(j));
-      sum += taps[j] * z;
+    const double turn = -2 * std::numbers::pi * frequency_Hz / rate_Hz, c = std::cos(turn), d = std::sin(turn);
+    double re = 1, im = 0, sum_re = 0, sum_im = 0;
+    for (std::size_t j = 0; j < taps.size(); ++j) {
+      if (j % 64 == 0) re = std::cos(turn * static_cast<double>(j)), im = std::sin(turn * static_cast<double>(j));
+      sum_re += taps[j] * re, sum_im += taps[j] * im;
+      const double next = re * c - im * d;
+      im = re * d + im * c, re = next;
     }
-    return sum * std::polar(1.0, turn * first);
+    return std::complex<double>(sum_re, sum_im) * std::polar(1.0, turn * first);
   }
 };
 
@@ -48,29 +53,47 @@ concept Transfer = requires(const H& h, double frequency_Hz) {
   { h(frequency_Hz) } -> std::convertible_to<std::complex<double>>;
 };
 
-/// Taps first ... last of the impulse response of `wanted` within `limits`, at `rate_Hz`.
-/// The response is sampled on a grid wide enough that what wraps around has died away: at least eight times the
+/// Several of them that are evaluated together: an array of complex responses at a frequency in Hz, >= 0.
+template <class H>
+concept TransferSet = requires(const H& h, double frequency_Hz) {
+  std::tuple_size<decltype(h(frequency_Hz))>::value;
+  { h(frequency_Hz)[0] } -> std::convertible_to<std::complex<double>>;
+};
+template <TransferSet H>
+inline constexpr std::size_t set_size = std::tuple_size_v<decltype(std::declval<const H&>()(0.0))>;
+
+/// Taps first ... last of the impulse responses of `wanted` within `limits`, at `rate_Hz`.
+/// The responses are sampled on a grid wide enough that what wraps around has died away: at least eight times the
 /// longest lag. Precondition: first <= last, limits.stop_Hz <= rate_Hz / 2.
-template <Transfer H>
-[[nodiscard]] fir sample_response(const H& wanted, const band& limits, double rate_Hz, int first, int last) {
+template <TransferSet H>
+[[nodiscard]] std::array<fir, set_size<H>> sample_responses(const H& wanted, const band& limits, double rate_Hz, int first, int last) {
   std::size_t grid = 4096;
   while (grid < 8 * static_cast<std::size_t>(std::max(std::abs(first), std::abs(last)))) grid *= 2;
-  const double turn = 2 * std::numbers::pi / static_cast<double>(grid);
-
-  fir out{first, std::vector<double>(static_cast<std::size_t>(last - first + 1), 0.0)};
+  const lane_fft<double, 1> transform(grid);
+  std::array<std::vector<double>, set_size<H>> spectrum;  // re, im by turns, in the order that the transform asks for
+  spectrum.fill(std::vector<double>(2 * grid, 0.0));
   for (std::size_t bin = 0; bin < grid / 2; ++bin) {
     const double f = rate_Hz * static_cast<double>(bin) / static_cast<double>(grid);
     const double weight = limits(f) / static_cast<double>(grid);
     if (f > limits.pass_Hz && weight == 0) break;
-    const std::complex<double> value = (bin == 0 ? 1.0 : 2.0) * weight * std::complex<double>(wanted(f));
-    const std::complex<double> step = std::polar(1.0, turn * static_cast<double>(bin));
-    std::complex<double> z = value * std::polar(1.0, turn * static_cast<double>(bin) * first);
-    for (double& tap : out.taps) {
-      tap += z.real();
-      z *= step;
+    const auto values = wanted(f);
+    const std::size_t at = 2 * transform.position(bin);
+    for (std::size_t i = 0; i < set_size<H>; ++i) {
+      const std::complex<double> value = (bin == 0 ? 1.0 : 2.0) * weight * std::complex<double>(values[i]);
+      spectrum[i][at] = value.real(), spectrum[i][at + 1] = value.imag();
     }
   }
+  std::array<fir, set_size<H>> out;
+  for (std::size_t i = 0; i < set_size<H>; ++i) {
+    transform.inverse(spectrum[i].data());
+    out[i].first = first;
+    for (int n = first; n <= last; ++n) out[i].taps.push_back(spectrum[i][2 * (n < 0 ? grid - static_cast<std::size_t>(-n) : static_cast<std::size_t>(n))]);
+  }
   return out;
+}
+template <Transfer H>
+[[nodiscard]] fir sample_response(const H& wanted, const band& limits, double rate_Hz, int first, int last) {
+  return sample_responses([&](double f) { return std::array<std::complex<double>, 1>{wanted(f)}; }, limits, rate_Hz, first, last)[0];
 }
 
 /// Largest |response - wanted W| / max |wanted| from 0 to the end of the pass band.
@@ -102,18 +125,28 @@ inline fir shrink(const fir& whole, std::size_t count) {
 
 }  // namespace detail
 
-/// The shortest run of taps whose response stays within `error` (relative to the largest |wanted|) of the wanted one all over
-/// the pass band. `first` ... `last` bound the search and must hold the response.
+/// The shortest runs of taps whose responses stay within `error` (relative to the largest |wanted|) of the wanted ones all over
+/// the pass band. `first` ... `last` bound the search and must hold the responses.
+template <TransferSet H>
+[[nodiscard]] std::array<fir, set_size<H>> shortest_firs(const H& wanted, const band& limits, double rate_Hz, int first, int last, double error) {
+  constexpr int points = 400;
+  std::array<fir, set_size<H>> out = sample_responses(wanted, limits, rate_Hz, first, last);
+  std::vector<decltype(wanted(0.0))> ideal;
+  for (int i = 0; i <= points; ++i) ideal.push_back(wanted(limits.pass_Hz * i / points));
+  for (std::size_t k = 0; k < set_size<H>; ++k) {
+    const auto known = [&](double f) { return std::complex<double>(ideal[limits.pass_Hz > 0 ? static_cast<std::size_t>(std::lround(f / limits.pass_Hz * points)) : 0][k]); };
+    std::size_t too_short = 0, enough = out[k].taps.size();
+    while (enough - too_short > 1) {
+      const std::size_t middle = (too_short + enough) / 2;
+      (pass_band_error(detail::shrink(out[k], middle), known, limits, rate_Hz, points) <= error ? enough : too_short) = middle;
+    }
+    out[k] = detail::shrink(out[k], enough);
+  }
+  return out;
+}
 template <Transfer H>
 [[nodiscard]] fir shortest_fir(const H& wanted, const band& limits, double rate_Hz, int first, int last, double error) {
-  const fir whole = sample_response(wanted, limits, rate_Hz, first, last);
-  std::size_t too_short = 0, enough = whole.taps.size();
-  while (enough - too_short > 1) {
-    const std::size_t middle = (too_short + enough) / 2;
-    const fir candidate = detail::shrink(whole, middle);
-    (pass_band_error(candidate, wanted, limits, rate_Hz) <= error ? enough : too_short) = middle;
-  }
-  return detail::shrink(whole, enough);
+  return shortest_firs([&](double f) { return std::array<std::complex<double>, 1>{wanted(f)}; }, limits, rate_Hz, first, last, error)[0];
 }
 
 }  // namespace rosin

@@ -39,10 +39,8 @@ template <class Physics>
 [[nodiscard]] std::vector<fir> kernels_of_motion(const bow_point& at, std::size_t end, const band& limits, double rate_Hz) {
   const bow_point_transfer<Physics> transfer(at, limits, rate_Hz);
   const passage_lags lags = lags_of_passage(std::max(at.delay_s[0], at.delay_s[1]), at.stiffness_s2, limits, rate_Hz);
-  std::vector<fir> kernels;
-  for (std::size_t quantity = 0; quantity < 3; ++quantity)
-    kernels.push_back(sample_response([&](double f) { return combine(transfer(f), 2 + end)[quantity]; }, limits, rate_Hz, -lags.last, lags.last));
-  return kernels;
+  const auto kernels = sample_responses([&](double f) { return combine(transfer(f), 2 + end); }, limits, rate_Hz, -lags.last, lags.last);
+  return {kernels.begin(), kernels.end()};
 }
 
 }  // namespace detail

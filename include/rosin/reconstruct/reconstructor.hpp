@@ -41,10 +41,8 @@ template <class Physics>
   const bow_point_transfer<Physics> transfer(at, limits, rate_Hz);
   const double longest = std::max(at.delay_s[0], at.delay_s[1]);
   const passage_lags lags = lags_of_passage(longest, at.stiffness_s2, limits, rate_Hz);
-  std::vector<fir> kernels;
-  for (std::size_t i = 0; i < transfer.outputs * transfer.inputs; ++i)
-    kernels.push_back(shortest_fir([&](double f) { return transfer(f)[i]; }, limits, rate_Hz, -lags.last, lags.last, error));
-  return kernels;
+  const auto kernels = shortest_firs(transfer, limits, rate_Hz, -lags.last, lags.last, error);
+  return {kernels.begin(), kernels.end()};
 }
 
 /// A reconstruction with a fixed calibration, for takes of any length. T: float or double.

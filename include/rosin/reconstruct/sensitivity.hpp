@@ -48,14 +48,19 @@ template <class Physics>
     waveform_vector by = waveform_vector::Zero();
     by[p] = step[p];
     const bow_point_transfer<Physics> above(c.moved(by).at, limits, rate_Hz), below(c.moved(-by).at, limits, rate_Hz);
-    for (std::size_t quantity = 0; quantity < 3; ++quantity)
-      for (std::size_t input = 0; input < above.inputs; ++input)
-        kernels.push_back(sample_response(
-            [&](double f) -> std::complex<double> {
-              if (is_gain) return detail::combine(above(f), input)[quantity] * (input % 2 == 0 ? -0.5 : 0.5);
-              return (detail::combine(above(f), input)[quantity] - detail::combine(below(f), input)[quantity]) / (2 * step[p]);
-            },
-            limits, rate_Hz, -lags.last, lags.last));
+    constexpr std::size_t inputs = bow_point_transfer<Physics>::inputs;
+    const auto slopes = [&](double f) {
+      const auto up = above(f), down = below(f);
+      std::array<std::complex<double>, 3 * inputs> out;
+      for (std::size_t input = 0; input < inputs; ++input) {
+        const auto more = detail::combine(up, input), less = detail::combine(down, input);
+        for (std::size_t quantity = 0; quantity < 3; ++quantity)
+          out[quantity * inputs + input] = is_gain ? more[quantity] * (input % 2 == 0 ? -0.5 : 0.5) : (more[quantity] - less[quantity]) / (2 * step[p]);
+      }
+      return out;
+    };
+    const auto made = sample_responses(slopes, limits, rate_Hz, -lags.last, lags.last);
+    kernels.insert(kernels.end(), made.begin(), made.end());
   }
   return kernels;
 }

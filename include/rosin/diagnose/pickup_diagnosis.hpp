@@ -1,0 +1,357 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What plucks heard by a single pickup or microphone say of physics that was left out.
+//
+//     listen -> structure (glide, pairs) -> table of partials -> law (stiffness, losses, loads, supports) -> strays (hum, other strings)
+//
+// The likelihood falls into these parts, since frequency and decay of every partial are free in the first and everything else is free in the
+// second; so each part is searched by itself. Takes set aside are then predicted sample by sample (pickup_prediction.hpp), of which only
+// pitch and the partials' amplitudes and phases are free. The same with each partial's own measured pole says how far any law could go.
+//
+#pragma once
+
+#include <rosin/diagnose/pickup_greedy.hpp>
+#include <rosin/diagnose/pickup_prediction.hpp>
+#include <rosin/diagnose/pickup_strays.hpp>
+
+namespace rosin {
+
+struct pickup_question {
+  double fundamental_Hz = 0;
+  std::vector<std::string> declared;  ///< effects that the model contains
+  std::vector<std::string> without;   ///< effects that the catalogue is not to know
+  double longest_s = 1.5;             ///< of a take that is judged
+};
+
+struct found_value {
+  std::string name;
+  double value = 0, sd = 0;
+};
+
+struct pickup_finding {
+  std::string effect;
+  std::vector<found_value> values;
+  double gain = 0;  ///< natural logarithm of the evidence
+  std::vector<std::string> alike;
+};
+
+/// One recording that was predicted.
+struct judged_ringing {
+  std::string take, channel;
+  double rate_Hz = 0, start_s = 0, noise = 0, recorded = 0;
+  std::vector<double> before, after;  ///< residuals
+  double own_poles = 0;               ///< rms of what is left with each partial's pole as the fitted takes have it
+};
+
+struct pickup_diagnosis {
+  std::vector<std::size_t> heard;  ///< which of the signals could be fitted
+  structure_hypothesis structure;
+  std::vector<structure_hypothesis> structures;
+  double glide_per_power = 0, glide_per_power_sd = 0;
+  line_table table;
+  law_search law;
+  stray_lines strays;
+  std::vector<pickup_finding> missing;
+  std::vector<std::pair<std::vector<std::string>, double>> ranking;  ///< natural logarithms, the best 0
+  std::vector<judged_ringing> judged;
+  double before = 0, after = 0, floor = 0, own_poles = 0;
+  bool mismatched = false, explained = true;
+  std::size_t worst = 0;  ///< of judged
+  std::array<double, 2> time_s{}, band_Hz{};
+  std::vector<std::string> warnings;
+};
+
+namespace detail {
+
+inline bool contains(const std::vector<std::string>& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
+
+class pickup_examination {
+public:
+  pickup_examination(const std::vector<pickup_signal>& fitted, const std::vector<pickup_signal>& held, const pickup_question& ask) : fitted_{fitted}, held_{held}, ask_{ask} {}
+
+  [[nodiscard]] outcome<pickup_diagnosis> run() {
+    hear(fitted_, ringings_, &d_.heard);
+    if (ringings_.empty()) return failure{d_.warnings.empty() ? "no pluck to listen to" : d_.warnings.back()};
+    find_structure();
+    d_.table = table_of(ringings_, d_.structure);
+    if (d_.table.lines.size() < 4) return failure{"partials: fewer than four are damped lines"};
+    hear(held_, held_ringings_, &held_heard_);
+    prepare_held();
+    find_law();
+    find_stray_lines();
+    name_all();
+    judge();
+    return std::move(d_);
+  }
+
+private:
+  [[nodiscard]] bool asked(const std::string& name) const { return !contains(ask_.declared, name) && !contains(ask_.without, name); }
+
+  void hear(const std::vector<pickup_signal>& signals, std::vector<pickup_ringing>& out, std::vector<std::size_t>* which) {
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      auto r = listen(signals[i], ask_.fundamental_Hz);
+      if (!r) d_.warnings.push_back(signals[i].take + ", channel " + signals[i].channel + ": not used: " + r.error());
+      else out.push_back(*std::move(r)), which->push_back(i);
+    }
+  }
+  [[nodiscard]] static bool power_known(const pickup_signal& s) { return s.kind == pickup_kind::force || (s.kind != pickup_kind::sound && s.position > 0); }
+
+  void find_structure() {
+    structure_question q{asked("tension-modulation"), asked("second-polarization"), contains(ask_.declared, "tension-modulation"), contains(ask_.declared, "second-polarization"), {}};
+    for (const std::size_t i : d_.heard) q.power_known.push_back(power_known(fitted_[i]));
+    d_.structures = structures_of(ringings_, q);
+    d_.structure = d_.structures.front();
+    if (!d_.structure.glides) return;
+    mean_of_several k;
+    for (std::size_t i = 0; i < ringings_.size(); ++i)
+      if (const auto& g = d_.structure.glide[i]; g.relative > 0) {
+        const double power = strength_of(ringings_[i]);
+        k.add(g.relative / power, std::hypot(g.sd, 0.01 * g.relative) / power);
+      }
+    d_.glide_per_power = k.mean(), d_.glide_per_power_sd = std::hypot(k.sd(), 0.02 * k.mean());  // no glide is exactly proportional
+  }
+  [[nodiscard]] static double strength_of(const pickup_ringing& r) {
+    double sum = 0;
+    for (const double p : r.power) sum += p;
+    return sum;
+  }
+  /// The glide that a ringing has by its strength.
+  [[nodiscard]] glide_found glide_of(const pickup_ringing& r) const {
+    const auto one = std::find_if(d_.structure.glide.begin(), d_.structure.glide.end(), [](const auto& g) { return g.relative > 0; });
+    glide_shape shape = one->shape.number.size() > 1 || one->shape.number[0] > 0 ? shape_by_power(r) : one->shape;
+    return {std::move(shape), d_.glide_per_power * strength_of(r), 0, 0, 1};
+  }
+  void prepare_held() {
+    structure_hypothesis still = d_.structure;
+    still.glides = false;
+    for (const auto& r : held_ringings_) {
+      held_glide_.push_back(d_.structure.glides ? glide_of(r) : glide_found{});
+      held_tables_.push_back(table_of({d_.structure.glides ? steady(r, held_glide_.back()) : r}, still));
+    }
+  }
+
+  void find_law() {
+    std::vector<law_effect> catalogue = law_effects(d_.table.lines.front().frequency_Hz / d_.table.lines.front().number, d_.table.lines.back().number);
+    std::vector<law_parameter> parameters = ideal_string(ask_.fundamental_Hz);
+    pickup_law start{ask_.fundamental_Hz, 0, 1e-3};
+    law_fit declared = fit_law(d_.table, parameters, start);
+    for (const auto& e : catalogue)
+      if (contains(ask_.declared, e.name)) declared = with_effect(d_.table, declared, e);
+    std::erase_if(catalogue, [&](const auto& e) { return !asked(e.name); });
+    std::vector<std::vector<string_line>> held;
+    for (const auto& t : held_tables_) held.push_back(t.lines);
+    const line_table together = held.empty() ? line_table{} : combined(held);
+    d_.law = search_law(d_.table, declared, catalogue, together.lines.size() < 4 ? nullptr : &together);
+  }
+
+  void find_stray_lines() {
+    if (!asked("mains-hum") && !asked("sympathetic-string")) return;
+    const auto& law = d_.law.best.law;
+    std::vector<double> own;
+    const int highest = d_.table.lines.back().number;
+    for (int n = 1; n < highest + 12; ++n)
+      for (const double b : {0.0, 0.25, 0.5, 1.0}) own.push_back(partial_frequency(law.fundamental_Hz, b * law.inharmonicity, n));
+    for (const auto& l : d_.table.lines) own.push_back(l.frequency_Hz);
+    const double near = std::max(5.0, 0.06 * law.fundamental_Hz);
+    std::vector<stray_lines> each;
+    for (std::size_t i = 0; i < ringings_.size(); ++i)
+      each.push_back(strays_of(fitted_[d_.heard[i]], ringings_[i], d_.structure.glides ? &d_.structure.glide[i] : nullptr, own, near));
+    for (std::size_t i = 0; i < held_ringings_.size(); ++i)
+      each.push_back(strays_of(held_[held_heard_[i]], held_ringings_[i], d_.structure.glides ? &held_glide_[i] : nullptr, own, near));
+    d_.strays = each.front();
+    const auto seen = [&](const stray_line& l, bool hum) {  // in every recording
+      return std::all_of(each.begin() + 1, each.end(), [&](const stray_lines& s) {
+        const auto& lines = hum ? s.hum : s.others;
+        return std::any_of(lines.begin(), lines.end(), [&](const stray_line& m) { return std::abs(m.frequency_Hz - l.frequency_Hz) < std::max(s.resolution_Hz, d_.strays.resolution_Hz); });
+      });
+    };
+    std::erase_if(d_.strays.hum, [&](const auto& l) { return !seen(l, true); });
+    std::erase_if(d_.strays.others, [&](const auto& l) { return !seen(l, false); });
+    if (!asked("mains-hum")) d_.strays.hum.clear();
+    if (!asked("sympathetic-string")) d_.strays.others.clear();
+    if (d_.strays.hum.empty()) d_.strays.mains_Hz = 0;
+  }
+  [[nodiscard]] stray_lines strays_of(const pickup_signal& s, const pickup_ringing& r, const glide_found* glide, const std::vector<double>& own, double near) const {
+    const auto stretch = stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + 2));
+    return find_strays(left_by_lines(stretch, by_table(0), glide), s.rate_Hz, own, near, d_.table.lines.back().frequency_Hz);
+  }
+
+  void name_all() {
+    if (d_.structure.glides && asked("tension-modulation")) {
+      double rise = 0;
+      for (const auto& g : d_.structure.glide) rise = std::max(rise, g.relative);
+      d_.missing.push_back({"tension-modulation", {{"pitch_rise", rise, rise * d_.glide_per_power_sd / d_.glide_per_power}}, worth_of(true), {}});
+    }
+    if ((d_.structure.paired || d_.structure.doubled) && asked("second-polarization")) d_.missing.push_back(polarization());
+    for (const auto& f : d_.law.found) {
+      pickup_finding out{f.effect.name, {}, f.gain, f.alike};
+      for (const auto& p : f.effect.parameters) out.values.push_back({p.name, d_.law.best.law.*p.member, d_.law.best.sd_of(p.name)});
+      d_.missing.push_back(std::move(out));
+    }
+    name_strays();
+    std::stable_sort(d_.missing.begin(), d_.missing.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+    rank();
+  }
+  /// Of the glide or of the pairs, within the structure that was chosen: what the best without it lacks.
+  [[nodiscard]] double worth_of(bool glide) const {
+    double best = 0;
+    for (const auto& h : d_.structures)
+      if (glide ? !h.glides : !h.paired && !h.doubled) best = std::max(best, h.evidence);
+    return d_.structure.evidence - best;
+  }
+  [[nodiscard]] pickup_finding polarization() const {
+    if (d_.structure.paired)
+      return {"second-polarization",
+              {{"detuning", d_.structure.pair.detuning, d_.structure.pair.sd}, {"coupling", d_.structure.pair.coupling, d_.structure.pair.coupling_sd}},
+              worth_of(false), {}};
+    std::vector<double> relative;
+    for (const auto& l : d_.table.lines)
+      if (l.split_Hz != 0) relative.push_back(l.split_Hz / l.frequency_Hz);
+    if (relative.empty()) return {"second-polarization", {}, worth_of(false), {}};
+    const Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(relative.data(), static_cast<Eigen::Index>(relative.size()));
+    const double middle = median_of(v), scatter = 1.48 * median_of((v.array() - middle).abs());
+    return {"second-polarization", {{"detuning", middle, scatter / std::sqrt(static_cast<double>(v.size()))}, {"detuning_scatter", scatter, 0}}, worth_of(false), {}};
+  }
+  void name_strays() {
+    if (!d_.strays.hum.empty()) {
+      double gain = 0;
+      const stray_line* first = &d_.strays.hum.front();
+      for (const auto& l : d_.strays.hum) gain += l.over_floor;
+      d_.missing.push_back({"mains-hum", {{"frequency_Hz", d_.strays.mains_Hz, 0.1 * d_.strays.resolution_Hz}, {"amplitude", first->amplitude, first->amplitude / std::sqrt(2 * first->over_floor)}}, gain, {}});
+    }
+    std::vector<stray_line> rest = d_.strays.others;
+    std::sort(rest.begin(), rest.end(), [](const auto& a, const auto& b) { return a.frequency_Hz < b.frequency_Hz; });
+    for (int strings = 0; !rest.empty() && strings < 4; ++strings) {
+      const stray_line lowest = rest.front();
+      double gain = 0;
+      std::erase_if(rest, [&](const stray_line& l) {
+        const double n = std::round(l.frequency_Hz / lowest.frequency_Hz);
+        if (std::abs(l.frequency_Hz - n * lowest.frequency_Hz) > std::max(n * 0.3 * d_.strays.resolution_Hz, 0.003 * l.frequency_Hz)) return false;
+        gain += l.over_floor;
+        return true;
+      });
+      d_.missing.push_back({"sympathetic-string", {{"frequency_Hz", lowest.frequency_Hz, 0.1 * d_.strays.resolution_Hz}, {"amplitude", lowest.amplitude, 0}}, gain, {}});
+    }
+  }
+  void rank() {
+    double all = 0;
+    std::vector<std::string> names;
+    for (const auto& m : d_.missing) all += m.gain, names.push_back(m.effect);
+    d_.ranking.emplace_back(names, 0.0);
+    if (!names.empty()) d_.ranking.emplace_back(std::vector<std::string>{}, -all);
+    const auto add = [&](const std::string& name, double gain) {
+      if (names.size() != 1 || names[0] != name) d_.ranking.emplace_back(std::vector<std::string>{name}, std::min(-0.1, gain - all));
+    };
+    for (const auto& [name, gain] : d_.law.alone) add(name, gain);
+    for (const auto& h : d_.structures)
+      if (h.glides != (h.paired || h.doubled)) add(h.glides ? "tension-modulation" : "second-polarization", h.evidence);
+    for (const auto& m : d_.missing)
+      if (m.effect == "mains-hum" || m.effect == "sympathetic-string") add(m.effect, m.gain);
+    std::stable_sort(d_.ranking.begin(), d_.ranking.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  }
+
+  [[nodiscard]] std::vector<predicted_line> by_law(const pickup_law& law, double offset) const {
+    std::vector<predicted_line> out;
+    for (int n = 1; n <= d_.table.lines.back().number; ++n) {
+      const auto s = pickup_pole(law, n);
+      out.push_back({n, {s.real(), s.imag() * (1 + offset)}});
+    }
+    return out;
+  }
+  [[nodiscard]] std::vector<predicted_line> by_table(double offset) const {
+    std::vector<predicted_line> out;
+    for (const auto& l : d_.table.lines) out.push_back({l.number, {-l.decay_per_s, full_turn * l.frequency_Hz * (1 + offset)}});
+    return doubled(std::move(out));
+  }
+  /// With the second line of each, as the structure has it.
+  [[nodiscard]] std::vector<predicted_line> doubled(std::vector<predicted_line> lines) const {
+    const std::size_t count = lines.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      auto other = lines[i];
+      const string_line* own = d_.table.find(other.number);
+      if (d_.structure.paired) other.pole *= 1 + d_.structure.pair.detuning;
+      else if (d_.structure.doubled && own != nullptr) other.pole += std::complex<double>{0, full_turn * own->split_Hz};
+      if (other.pole != lines[i].pole) lines.push_back(other);
+    }
+    return lines;
+  }
+  [[nodiscard]] std::vector<predicted_line> with_strays(std::vector<predicted_line> lines) const {
+    for (const auto& l : d_.strays.hum) lines.push_back({0, {0, full_turn * l.frequency_Hz}});
+    for (const auto& l : d_.strays.others) lines.push_back({0, {std::min(0.0, std::log(l.change)), full_turn * l.frequency_Hz}});
+    return lines;
+  }
+
+  void judge() {
+    std::map<int, string_line> reference;
+    for (const auto& l : d_.table.lines) reference.emplace(l.number, l);
+    const bool glide_known = contains(ask_.declared, "tension-modulation"), pairs_known = contains(ask_.declared, "second-polarization");
+    double before = 0, after = 0, floor = 0, poles = 0;
+    for (std::size_t i = 0; i < held_ringings_.size(); ++i) {
+      const auto& r = held_ringings_[i];
+      const auto& s = held_[held_heard_[i]];
+      const auto stretch = stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + ask_.longest_s));
+      const glide_found* glide = d_.structure.glides ? &held_glide_[i] : nullptr;
+      const double offset = std::expm1(offset_between(held_tables_[i].lines, reference));
+      judged_ringing j{s.take, s.channel, s.rate_Hz, r.start_s, 0, rms_of(stretch.x), {}, {}, 0};
+      const auto plain = by_law(d_.law.declared.law, offset);
+      j.before = left_by_lines(stretch, pairs_known ? doubled(plain) : plain, glide_known ? glide : nullptr);
+      j.after = left_by_lines(stretch, with_strays(doubled(by_law(d_.law.best.law, offset))), glide);
+      j.own_poles = rms_of(left_by_lines(stretch, with_strays(by_table(offset)), glide));
+      j.noise = std::min(noise_in(left_by_lines(stretch, with_strays(doubled(own_lines(i))), glide), s.rate_Hz), rms_of(j.after));
+      const double square = 1 / (j.recorded * j.recorded * static_cast<double>(held_ringings_.size()));
+      before += square * std::pow(rms_of(j.before), 2), after += square * std::pow(rms_of(j.after), 2);
+      floor += square * j.noise * j.noise, poles += square * j.own_poles * j.own_poles;
+      d_.judged.push_back(std::move(j));
+    }
+    d_.before = std::sqrt(before), d_.after = std::sqrt(after), d_.floor = std::sqrt(floor), d_.own_poles = std::sqrt(poles);
+    decide();
+  }
+  [[nodiscard]] std::vector<predicted_line> own_lines(std::size_t i) const {
+    std::vector<predicted_line> out;
+    for (const auto& l : held_tables_[i].lines) out.push_back({l.number, {-l.decay_per_s, full_turn * l.frequency_Hz}});
+    return out;
+  }
+
+  void decide() {
+    const double excess = std::sqrt(std::max(0.0, d_.after * d_.after - d_.floor * d_.floor)), was = std::sqrt(std::max(0.0, d_.before * d_.before - d_.floor * d_.floor));
+    d_.mismatched = !d_.missing.empty() || was > 0.5 * d_.floor;
+    d_.explained = !d_.mismatched || (!d_.missing.empty() && excess < std::max(0.5 * d_.floor, 0.12 * was));
+    double most = 0;
+    for (std::size_t i = 0; i < d_.judged.size(); ++i)
+      if (const double x = rms_of(d_.judged[i].before) / std::max(d_.judged[i].noise, 1e-300); x > most) most = x, d_.worst = i;
+    if (!d_.judged.empty()) locate(d_.judged[d_.worst]);
+  }
+  void locate(const judged_ringing& j) {
+    const auto block = std::max<std::size_t>(64, static_cast<std::size_t>(0.05 * j.rate_Hz));
+    double most = 0;
+    std::span<const double> x{j.before};
+    std::size_t at = 0;
+    for (std::size_t k = 0; k + block <= x.size(); k += block / 2)
+      if (const double p = rms_of(x.subspan(k, block)); p > most) most = p, at = k;
+    d_.time_s = {j.start_s + static_cast<double>(at) / j.rate_Hz, j.start_s + static_cast<double>(at + block) / j.rate_Hz};
+    const double f0 = d_.law.declared.law.fundamental_Hz;
+    const baseband_bank bank{x, j.rate_Hz, std::min(64.0, 0.45 * f0)};
+    most = 0;
+    for (int n = 1; n <= d_.table.lines.back().number; ++n)
+      if (const double p = energy_of(bank.around(pickup_pole(d_.law.best.law, n).imag() / full_turn).samples); p > most) most = p, d_.band_Hz = {(n - 0.5) * f0, (n + 0.5) * f0};
+  }
+
+  const std::vector<pickup_signal>& fitted_;
+  const std::vector<pickup_signal>& held_;
+  const pickup_question& ask_;
+  pickup_diagnosis d_;
+  std::vector<pickup_ringing> ringings_, held_ringings_;
+  std::vector<std::size_t> held_heard_;
+  std::vector<glide_found> held_glide_;
+  std::vector<line_table> held_tables_;
+};
+
+}  // namespace detail
+
+/// `held`: recordings that are predicted only; never empty.
+[[nodiscard]] inline outcome<pickup_diagnosis> diagnose_pickups(const std::vector<pickup_signal>& fitted, const std::vector<pickup_signal>& held, const pickup_question& ask) {
+  return detail::pickup_examination(fitted, held, ask).run();
+}
+
+}  // namespace rosin

@@ -1,0 +1,144 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Tension modulation as one channel hears it (Kirchhoff and Carrier): a string that swings is longer, so that every partial is sharp,
+//
+//     df_m / f_m = g(t) = relative sum_n p_n (1 + d_nm / 2) exp(-2 a_n t),     sum p_n = 1,
+//
+// p_n the powers of the partials as slopes of the string, a_n their decay; a mode stretches itself half as much again. Where the sensor's
+// place is not known the p_n are those of the recording, or all is one exponential of unknown rate: what leaves less is taken. With
+// slopes in absolute units relative = E A / (16 T) sum slope_n^2.
+//
+#pragma once
+
+#include <rosin/diagnose/pickup_pair.hpp>
+
+#include <complex>
+#include <optional>
+
+namespace rosin {
+
+/// g(t) of one ringing but for its strength.
+struct glide_shape {
+  std::vector<double> power, rate_per_s;  ///< power adds up to 1
+  std::vector<int> number;                ///< of the partial; 0: of none
+  std::string name;
+
+  /// Integral over (0, t) for partial m.
+  [[nodiscard]] double path_s(int m, double t) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < power.size(); ++i) sum += (number[i] == m ? 1.5 : 1.0) * power[i] * -std::expm1(-rate_per_s[i] * t) / rate_per_s[i];
+    return sum;
+  }
+};
+
+/// As the sensor's place and the decays have it.
+[[nodiscard]] inline glide_shape shape_by_power(const pickup_ringing& r) {
+  glide_shape s{{}, {}, {}, "power of the partials"};
+  double sum = 0;
+  for (const double p : r.power) sum += p;
+  for (std::size_t i = 0; i < r.tracks.size(); ++i) {
+    s.power.push_back(r.power[i] / sum);
+    s.rate_per_s.push_back(2 * detail::as_one(r.tracks[i]).decay_per_s);
+    s.number.push_back(r.tracks[i].number);
+  }
+  return s;
+}
+[[nodiscard]] inline glide_shape shape_by_rate(double rate_per_s) { return {{1}, {rate_per_s}, {0}, "one exponential"}; }
+
+/// The track with a glide of that strength taken out: one line is fitted anew.
+[[nodiscard]] inline partial_track without_glide(const partial_track& t, const std::vector<double>& path_s, double relative, double tolerance_Hz) {
+  partial_track out = t;
+  const double turn = -detail::full_turn * t.fit.model.centre_Hz * relative;
+  for (std::size_t j = 0; j < out.samples.size(); ++j) out.samples[j] *= std::polar(1.0, turn * path_s[j]);
+  out.fit = fit_one_line(out.samples, out.rate_Hz, t.fit.model.centre_Hz, tolerance_Hz);
+  return out;
+}
+
+[[nodiscard]] inline std::vector<double> path_along(const glide_shape& shape, const partial_track& t) {
+  std::vector<double> path;
+  for (std::size_t j = 0; j < t.samples.size(); ++j) path.push_back(shape.path_s(t.number, static_cast<double>(j) / t.rate_Hz));
+  return path;
+}
+
+/// The glide of one ringing, and what it is worth.
+struct glide_found {
+  glide_shape shape;
+  double relative = 0, sd = 0, gain = 0;  ///< sharp by that at the start; by how much ln L rises
+  double agreeing = 0;                    ///< part of the partials that are better off
+};
+
+namespace detail {
+
+/// Strength of a glide by likelihood in the clearest partials, each of them one line or a pair of a known distance.
+class glide_search {
+public:
+  glide_search(const pickup_ringing& r, const glide_shape& shape, double detuning) : r_{r}, shape_{shape}, detuning_{detuning}, which_{clearest(r, 24)} {
+    for (const std::size_t i : which_) {
+      path_.push_back(path_along(shape, r.tracks[i]));
+      plain_.push_back(value(path_.size() - 1, 0));
+    }
+  }
+  [[nodiscard]] double gain(double relative) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < which_.size(); ++k) sum += value(k, relative) - plain_[k];
+    return sum;
+  }
+  /// From `about` on, or anywhere.
+  [[nodiscard]] glide_found best(double about = 0) const {
+    double at = about, most = about != 0 ? gain(about) : 0;
+    if (about == 0)
+      for (double g = 4e-6; g < 0.02; g *= 1.35)
+        if (const double v = gain(g); v > most) most = v, at = g;
+    double step = (about == 0 ? 0.16 : 0.02) * at;
+    for (int i = 0; i < 24 && std::abs(step) > 2e-4 * std::abs(at); ++i) {
+      const double here = at;
+      for (const double x : {here - step, here + step})
+        if (const double v = gain(x); v > most) most = v, at = x;
+      if (at == here) step /= 2;
+    }
+    return described(at, most);
+  }
+
+private:
+  [[nodiscard]] double value(std::size_t k, double relative) const {
+    const partial_track& t = r_.tracks[which_[k]];
+    const partial_track still = without_glide(t, path_[k], relative, 1.5 * r_.tolerance_Hz);
+    return log_likelihood(t, detuning_ == 0 ? still.fit.residual : fit_pair(still, detuning_).residual);
+  }
+  [[nodiscard]] glide_found described(double at, double most) const {
+    glide_found out{shape_, at, std::numeric_limits<double>::infinity(), most, 0};
+    if (!(at > 0)) return out;
+    double h = 0.001 * at;
+    while (h < 0.5 * at && most - gain(at + h) < 0.5) h *= 2;
+    const double curve = (gain(at + h) - 2 * most + gain(at - h)) / (h * h);
+    if (curve < 0) out.sd = 1 / std::sqrt(-curve);
+    for (std::size_t k = 0; k < which_.size(); ++k) out.agreeing += value(k, at) > plain_[k] ? 1 : 0;
+    out.agreeing /= static_cast<double>(which_.size());
+    return out;
+  }
+
+  const pickup_ringing& r_;
+  glide_shape shape_;
+  double detuning_;
+  std::vector<std::size_t> which_;
+  std::vector<std::vector<double>> path_;
+  std::vector<double> plain_;
+};
+
+}  // namespace detail
+
+/// The likelier of the shapes; `power_known`: the sensor tells the powers, and no other shape is asked for. detuning: of pairs, or 0.
+[[nodiscard]] inline glide_found find_glide(const pickup_ringing& r, bool power_known, double detuning = 0) {
+  glide_found best = detail::glide_search(r, shape_by_power(r), detuning).best();
+  if (power_known) return best;
+  const double rate = detail::glide_decay(r.tracks);
+  for (const double factor : {1.0, 0.4, 2.5}) {
+    const glide_found other = detail::glide_search(r, shape_by_rate(rate * factor), detuning).best();
+    if (other.gain > best.gain + 3) best = other;
+    if (best.gain < 5) break;
+  }
+  return best;
+}
+
+}  // namespace rosin

@@ -1,0 +1,108 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Which effects does a table of partials call for? One after the other: the effect that raises the evidence most is kept if it is worth
+// it, if it foretells partials that were set aside better, and if it is no crumb of what was found before. Those found earlier are then
+// asked whether they are still needed, and whether another would now do better in their place.
+//
+#pragma once
+
+#include <rosin/diagnose/pickup_effects.hpp>
+
+namespace rosin {
+
+struct greedy_limits {
+  double worth = 7;        ///< natural logarithm of the evidence
+  double crumb = 0.08;     ///< of what was gained so far
+  double alike = 5;        ///< nearer than that cannot be told apart
+  int most = 4;
+};
+
+struct found_in_law {
+  law_effect effect;
+  double gain = 0;
+  std::vector<std::string> alike;
+};
+
+struct law_search {
+  law_fit declared, best;
+  std::vector<found_in_law> found;
+  std::vector<std::pair<std::string, double>> alone;  ///< each effect by itself: evidence against the declared law
+  double gain = 0;                                    ///< of all found together
+};
+
+namespace detail {
+
+struct tried_effect {
+  const law_effect* effect;
+  law_fit fit;
+  double evidence;
+};
+
+inline std::vector<tried_effect> try_each(const line_table& table, const law_fit& base, const std::vector<law_effect>& catalogue) {
+  std::vector<tried_effect> out;
+  for (const auto& e : catalogue) {
+    const bool there = std::any_of(base.parameters.begin(), base.parameters.end(), [&](const auto& p) { return p.member == e.strength; });
+    if (there || 2 * table.lines.size() < base.parameters.size() + e.parameters.size() + 4) continue;
+    law_fit f = with_effect(table, base, e);
+    out.push_back({&e, f, evidence_of(f, table.lines.size())});
+  }
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+  return out;
+}
+
+inline law_fit without_effect(const line_table& table, const law_fit& fit, const law_effect& e) {
+  law_fit less = fit;
+  std::erase_if(less.parameters, [&](const auto& p) { return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const auto& q) { return q.member == p.member; }); });
+  pickup_law start = fit.law;
+  start.*e.strength = 0;
+  return fit_law(table, less.parameters, start);
+}
+
+/// Each effect found is taken out and sought anew: it stays, makes room for a better one, or goes.
+inline void exchange(const line_table& table, const std::vector<law_effect>& catalogue, const greedy_limits& limits, law_search& s) {
+  for (std::size_t i = 0; i < s.found.size() && s.found.size() > 1;) {
+    const law_fit less = without_effect(table, s.best, s.found[i].effect);
+    const double now = evidence_of(s.best, table.lines.size()), before = evidence_of(less, table.lines.size());
+    if (now - before < limits.worth) {
+      s.best = less;
+      s.found.erase(s.found.begin() + static_cast<std::ptrdiff_t>(i));
+      continue;
+    }
+    const auto others = try_each(table, less, catalogue);
+    if (!others.empty() && others.front().evidence > now + 3 && others.front().effect->name != s.found[i].effect.name)
+      s.best = others.front().fit, s.found[i] = {*others.front().effect, others.front().evidence - before, {}};
+    ++i;
+  }
+}
+
+}  // namespace detail
+
+/// `held`: partials that are predicted only; null where there are none.
+[[nodiscard]] inline law_search search_law(const line_table& table, const law_fit& declared, const std::vector<law_effect>& catalogue, const line_table* held,
+                                           const greedy_limits& limits = {}) {
+  law_search s{declared, declared, {}, {}, 0};
+  const double nothing = evidence_of(declared, table.lines.size());
+  for (int round = 0; round < limits.most; ++round) {
+    const auto tried = detail::try_each(table, s.best, catalogue);
+    const double now = evidence_of(s.best, table.lines.size());
+    if (round == 0)
+      for (const auto& t : tried) s.alone.emplace_back(t.effect->name, std::max(t.evidence - nothing, -1e3));
+    const auto good = [&](const detail::tried_effect& t) {
+      const bool foretells = held == nullptr || predicted_log_likelihood(*held, t.fit) > predicted_log_likelihood(*held, s.best);
+      return t.evidence - now > std::max(limits.worth, limits.crumb * (now - nothing)) && foretells;
+    };
+    const auto best = std::find_if(tried.begin(), tried.end(), good);
+    if (best == tried.end()) break;
+    found_in_law f{*best->effect, best->evidence - now, {}};
+    for (const auto& t : tried)
+      if (t.effect != best->effect && t.evidence > best->evidence - limits.alike) f.alike.push_back(t.effect->name);
+    s.best = best->fit;
+    s.found.push_back(std::move(f));
+    detail::exchange(table, catalogue, limits, s);
+  }
+  s.gain = evidence_of(s.best, table.lines.size()) - nothing;
+  return s;
+}
+
+}  // namespace rosin

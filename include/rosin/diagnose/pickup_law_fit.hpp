@@ -1,0 +1,207 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// A law (pickup_poles.hpp) fitted to a table of partials, frequencies and decays at once. No law of real strings is exact, so both have a
+// scatter about it beside their own errors,
+//
+//     var f_n = sd^2 + (s_f shape)^2,  shape 1 or n, whichever is likelier;     var a_n = sd^2 + (s_a a_n)^2,
+//
+// found with the law (Huber's proposal 2) and robust against a few wrong partials (1.5 standard deviations). ln L therefore rises only as an
+// effect takes scatter away: what stands for deviations no larger than those that remain is worth nothing, however small the errors.
+//
+#pragma once
+
+#include <rosin/diagnose/pickup_poles.hpp>
+#include <rosin/diagnose/pickup_table.hpp>
+
+#include <functional>
+
+namespace rosin {
+
+/// One free number of a law.
+struct law_parameter {
+  std::string name;
+  double pickup_law::*member = nullptr;
+  double low = 0, high = 1;
+  bool logarithmic = false;
+};
+
+struct law_fit {
+  pickup_law law;
+  std::vector<law_parameter> parameters;
+  Eigen::VectorXd sd;            ///< of the parameters themselves
+  Eigen::MatrixXd covariance;    ///< as they are fitted (logarithms where logarithmic)
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+  double scatter_Hz = 0, scatter_decay = 0;  ///< beyond errors; of the first partial where in_proportion; relative
+  bool in_proportion = false;
+
+  [[nodiscard]] double sd_of(const std::string& name) const {
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      if (parameters[i].name == name) return sd[static_cast<Eigen::Index>(i)];
+    return 0;
+  }
+};
+
+namespace detail {
+
+class law_problem {
+public:
+  law_problem(const line_table& table, const std::vector<law_parameter>& parameters, bool in_proportion)
+      : table_{table}, parameters_{parameters}, proportion_{in_proportion}, rows_{static_cast<Eigen::Index>(table.lines.size())} {}
+
+  [[nodiscard]] law_fit fit(pickup_law start) const {
+    law_fit best;
+    best.law = start, best.parameters = parameters_, best.in_proportion = proportion_;
+    auto state = look(start);
+    double damping = 1e-2;
+    for (int i = 0; i < 60 && damping < 1e8; ++i) {
+      const Eigen::MatrixXd j = jacobian(best.law).array().colwise() * state.weight.cwiseSqrt().array();
+      const Eigen::VectorXd r = state.residual.cwiseProduct(state.weight.cwiseSqrt());
+      Eigen::MatrixXd normal = j.transpose() * j;
+      normal.diagonal() += damping * normal.diagonal() + Eigen::VectorXd::Constant(normal.rows(), 1e-300);
+      const pickup_law next = moved(best.law, normal.ldlt().solve(j.transpose() * r));
+      auto there = look(next);
+      if (!(there.log_likelihood > state.log_likelihood)) {
+        damping *= 5;
+        continue;
+      }
+      const bool done = there.log_likelihood - state.log_likelihood < 1e-5;
+      best.law = next, state = there, damping = std::max(damping / 6, 1e-10);
+      if (done) break;
+    }
+    finish(best, state);
+    return best;
+  }
+
+  /// By how much the weighted squares would fall, half of it, if this derivative of (f, a) joined the parameters at this law; and its best size.
+  [[nodiscard]] std::pair<double, double> score(const law_fit& at, const Eigen::VectorXd& column) const {
+    const auto state = look(at.law);
+    const Eigen::VectorXd root = state.weight.cwiseSqrt();
+    const Eigen::MatrixXd j = jacobian(at.law).array().colwise() * root.array();
+    const auto qr = j.colPivHouseholderQr();
+    const Eigen::VectorXd c = column.cwiseProduct(root), r = state.residual.cwiseProduct(root);
+    const Eigen::VectorXd clean = c - j * qr.solve(c), rest = r - j * qr.solve(r);
+    const double size = clean.dot(rest) / std::max(clean.squaredNorm(), 1e-300);
+    return {0.5 * size * clean.dot(rest), size};
+  }
+  /// Frequencies, then decays.
+  [[nodiscard]] Eigen::VectorXd predicted(const pickup_law& l) const {
+    Eigen::VectorXd y(2 * rows_);
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      const auto s = pickup_pole(l, table_.lines[static_cast<std::size_t>(i)].number);
+      y[i] = s.imag() / full_turn, y[rows_ + i] = -s.real();
+    }
+    return y;
+  }
+
+private:
+  struct view {
+    Eigen::VectorXd residual, weight;
+    double scatter_Hz = 0, scatter_decay = 0, log_likelihood = 0;
+  };
+  [[nodiscard]] view look(const pickup_law& l) const {
+    const huber_limits limits{1.5, 1e300};
+    const Eigen::VectorXd y = predicted(l);
+    view v{Eigen::VectorXd(2 * rows_), Eigen::VectorXd(2 * rows_)};
+    std::array<robust_data, 2> data;
+    for (auto& d : data) d.y.resize(rows_), d.variance.resize(rows_), d.shape.resize(rows_);
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      const auto& line = table_.lines[static_cast<std::size_t>(i)];
+      data[0].variance[i] = std::pow(line.frequency_sd, 2), data[1].variance[i] = std::pow(line.decay_sd, 2);
+      data[0].shape[i] = proportion_ ? line.number : 1.0, data[1].shape[i] = std::max(y[rows_ + i], 0.2 * line.decay_per_s);
+      v.residual[i] = line.frequency_Hz - y[i], v.residual[rows_ + i] = line.decay_per_s - y[rows_ + i];
+    }
+    const auto p = static_cast<Eigen::Index>(parameters_.size());
+    for (Eigen::Index b = 0; b < 2; ++b) {
+      const auto& d = data[static_cast<std::size_t>(b)];
+      const Eigen::VectorXd r = v.residual.segment(b * rows_, rows_);
+      double& scatter = b == 0 ? v.scatter_Hz : v.scatter_decay;
+      scatter = scatter_of(d, r, std::max<Eigen::Index>(1, p / 2), limits);
+      const Eigen::VectorXd sigma = spread_of(d, scatter);
+      for (Eigen::Index i = 0; i < rows_; ++i) {
+        const double u = std::abs(r[i]) / sigma[i];
+        v.weight[b * rows_ + i] = limits.weight(u) / (sigma[i] * sigma[i]);
+        v.log_likelihood -= std::log(sigma[i]) + (u <= limits.bend ? u * u / 2 : limits.bend * (u - limits.bend / 2));
+      }
+    }
+    return v;
+  }
+  [[nodiscard]] pickup_law moved(pickup_law l, const Eigen::VectorXd& by) const {
+    for (std::size_t k = 0; k < parameters_.size(); ++k) {
+      const auto& p = parameters_[k];
+      double& x = l.*p.member;
+      const double step = by[static_cast<Eigen::Index>(k)];
+      x = std::clamp(p.logarithmic ? x * std::exp(std::clamp(step, -1.0, 1.0)) : x + step, p.low, p.high);
+    }
+    return l;
+  }
+  [[nodiscard]] Eigen::MatrixXd jacobian(const pickup_law& l) const {
+    Eigen::MatrixXd j(2 * rows_, static_cast<Eigen::Index>(parameters_.size()));
+    for (std::size_t k = 0; k < parameters_.size(); ++k) {
+      const auto& p = parameters_[k];
+      pickup_law up = l, down = l;
+      const double x = l.*p.member, h = p.logarithmic ? 1e-5 : 1e-5 * std::max(std::abs(x), 1e-3 * (p.high - p.low));
+      up.*p.member = p.logarithmic ? x * std::exp(h) : x + h;
+      down.*p.member = p.logarithmic ? x * std::exp(-h) : x - h;
+      j.col(static_cast<Eigen::Index>(k)) = (predicted(up) - predicted(down)) / (2 * h);
+    }
+    return j;
+  }
+  void finish(law_fit& f, const view& v) const {
+    f.log_likelihood = v.log_likelihood, f.scatter_Hz = v.scatter_Hz, f.scatter_decay = v.scatter_decay;
+    const Eigen::MatrixXd j = jacobian(f.law).array().colwise() * v.weight.cwiseSqrt().array();
+    const Eigen::VectorXd size = j.colwise().norm().transpose().cwiseMax(1e-300);
+    const Eigen::MatrixXd unit = j * size.cwiseInverse().asDiagonal();
+    f.covariance = size.cwiseInverse().asDiagonal() * (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse().eval() * size.cwiseInverse().asDiagonal();
+    const double free = static_cast<double>(2 * rows_) - static_cast<double>(parameters_.size());
+    f.covariance *= free > 2.5 ? free / (free - 2) : 5.0;
+    f.sd = f.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    for (std::size_t k = 0; k < parameters_.size(); ++k)
+      if (parameters_[k].logarithmic) f.sd[static_cast<Eigen::Index>(k)] *= f.law.*parameters_[k].member;
+  }
+
+  const line_table& table_;
+  const std::vector<law_parameter>& parameters_;
+  bool proportion_;
+  Eigen::Index rows_;
+};
+
+}  // namespace detail
+
+/// From `start` on, with the scatter of the likelier shape. Precondition: at least four lines.
+[[nodiscard]] inline law_fit fit_law(const line_table& table, const std::vector<law_parameter>& parameters, const pickup_law& start) {
+  law_fit alike = detail::law_problem(table, parameters, false).fit(start);
+  law_fit scaled = detail::law_problem(table, parameters, true).fit(start);
+  return scaled.log_likelihood > alike.log_likelihood ? scaled : alike;
+}
+
+/// ln L of other partials of the same string (another pitch is allowed) by a law that was fitted elsewhere, with the scatter that they
+/// themselves have about it.
+[[nodiscard]] inline double predicted_log_likelihood(const line_table& table, const law_fit& fit) {
+  const auto n = static_cast<Eigen::Index>(table.lines.size());
+  std::array<robust_data, 2> data;
+  for (auto& d : data) d.y.resize(n), d.variance.resize(n), d.shape.resize(n);
+  Eigen::VectorXd off(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& l = table.lines[static_cast<std::size_t>(i)];
+    const auto s = pickup_pole(fit.law, l.number);
+    off[i] = std::log(l.frequency_Hz * detail::full_turn / s.imag());
+    data[0].y[i] = s.imag() / detail::full_turn, data[1].y[i] = l.decay_per_s + s.real();
+    data[0].variance[i] = std::pow(l.frequency_sd, 2), data[1].variance[i] = std::pow(l.decay_sd, 2);
+    data[0].shape[i] = fit.in_proportion ? l.number : 1.0, data[1].shape[i] = std::max(-s.real(), 0.2 * l.decay_per_s);
+  }
+  const double pitch = std::exp(detail::median_of(off));
+  for (Eigen::Index i = 0; i < n; ++i) data[0].y[i] = table.lines[static_cast<std::size_t>(i)].frequency_Hz - pitch * data[0].y[i];
+  const detail::huber_limits limits{1.5, 1e300};
+  double sum = 0;
+  for (const auto& d : data) {
+    const Eigen::VectorXd sigma = detail::spread_of(d, detail::scatter_of(d, d.y, 1, limits));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double u = std::abs(d.y[i]) / sigma[i];
+      sum -= std::log(sigma[i]) + (u <= limits.bend ? u * u / 2 : limits.bend * (u - limits.bend / 2));
+    }
+  }
+  return sum;
+}
+
+}  // namespace rosin

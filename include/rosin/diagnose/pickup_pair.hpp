@@ -1,0 +1,187 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Two polarizations as one channel hears them: every partial is a pair of lines, f and f (1 + detuning), with one decay and with amplitudes
+// of their own. The detuning is common to all partials where the supports are rigid; supports that yield differently in the two planes make
+// each pair its own (partial_choice.hpp tells these). Amplitudes are eliminated for each detuning, which is sought on a grid and refined.
+//
+#pragma once
+
+#include <rosin/diagnose/pickup_ringing.hpp>
+
+#include <array>
+#include <complex>
+
+namespace rosin {
+
+/// c1 exp(s t) + c2 exp(s' t), s = -decay + i w, s' = -decay + i (w + shift).
+struct line_pair {
+  std::array<std::complex<double>, 2> amplitude{};
+  double decay_per_s = 0, detuning_rad_s = 0, shift_rad_s = 0, residual = 0;
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();  ///< re, im of both, decay, detuning
+};
+
+namespace detail {
+
+struct pair_normals {
+  Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+  double residual = 0;
+};
+
+/// `relative`: the shift grows with the frequency of the first line by so much.
+inline pair_normals normals_of(complex_span z, double rate_Hz, const line_pair& p, double relative) {
+  constexpr std::complex<double> i{0, 1};
+  pair_normals n;
+  const auto step = std::exp(std::complex<double>{-p.decay_per_s, p.detuning_rad_s} / rate_Hz), other = std::polar(1.0, p.shift_rad_s / rate_Hz);
+  std::complex<double> e = 1, turned = 1;
+  std::array<std::complex<double>, 6> row;
+  for (std::size_t j = 0; j < z.size(); ++j, e *= step, turned *= other) {
+    const double t = static_cast<double>(j) / rate_Hz;
+    const auto a = p.amplitude[0] * e, b = p.amplitude[1] * e * turned;
+    row = {e, i * e, e * turned, i * e * turned, -t * (a + b), i * t * (a + (1 + relative) * b)};
+    const auto r = z[j] - a - b;
+    for (int u = 0; u < 6; ++u) {
+      const auto su = static_cast<std::size_t>(u);
+      n.gradient[u] += row[su].real() * r.real() + row[su].imag() * r.imag();
+      for (int v = 0; v <= u; ++v) {
+        const auto sv = static_cast<std::size_t>(v);
+        n.matrix(u, v) += row[su].real() * row[sv].real() + row[su].imag() * row[sv].imag();
+      }
+    }
+    n.residual += std::norm(r);
+  }
+  n.matrix.triangularView<Eigen::StrictlyUpper>() = n.matrix.transpose();
+  return n;
+}
+
+/// Levenberg and Marquardt from decay and detuning; amplitudes first by themselves.
+inline line_pair fit_pair_from(const partial_track& t, line_pair p, double relative) {
+  const complex_span z{t.samples};
+  const double centre = full_turn * t.fit.model.centre_Hz;
+  p.shift_rad_s = relative * (centre + p.detuning_rad_s);
+  p.amplitude = {};
+  auto n = normals_of(z, t.rate_Hz, p, relative);
+  const Eigen::Vector4d c = n.matrix.topLeftCorner<4, 4>().ldlt().solve(n.gradient.head<4>());
+  p.amplitude = {std::complex{c[0], c[1]}, std::complex{c[2], c[3]}};
+  n = normals_of(z, t.rate_Hz, p, relative);
+  double damping = 1e-3;
+  for (int k = 0; k < 25 && damping < 1e7; ++k) {
+    auto damped = n.matrix;
+    damped.diagonal() *= 1 + damping;
+    const Eigen::Matrix<double, 6, 1> by = damped.ldlt().solve(n.gradient);
+    line_pair next = p;
+    next.amplitude[0] += std::complex{by[0], by[1]};
+    next.amplitude[1] += std::complex{by[2], by[3]};
+    next.decay_per_s += by[4], next.detuning_rad_s += by[5];
+    next.shift_rad_s = relative * (centre + next.detuning_rad_s);
+    const auto there = normals_of(z, t.rate_Hz, next, relative);
+    if (!(there.residual < n.residual)) {
+      damping *= 8;
+      continue;
+    }
+    const bool done = n.residual - there.residual < 1e-7 * n.residual;
+    p = next, n = there, damping = std::max(damping / 8, 1e-12);
+    if (done) break;
+  }
+  p.residual = n.residual, p.information = n.matrix;
+  return p;
+}
+
+}  // namespace detail
+
+/// The best pair with that relative distance: the line that was fitted alone may be either of the two.
+[[nodiscard]] inline line_pair fit_pair(const partial_track& t, double relative) {
+  const damped_part& one = t.fit.model.parts[0];
+  const double shift = relative * (detail::full_turn * t.fit.model.centre_Hz + one.detuning_rad_s);
+  line_pair start;
+  start.decay_per_s = one.decay_per_s, start.detuning_rad_s = one.detuning_rad_s;
+  const line_pair lower = detail::fit_pair_from(t, start, relative);
+  start.detuning_rad_s -= shift;
+  const line_pair upper = detail::fit_pair_from(t, start, relative);
+  return upper.residual < lower.residual ? upper : lower;
+}
+
+/// By how much a pair is likelier than one line; none where two lines are large only to cancel each other.
+[[nodiscard]] inline double gain_of_pair(const partial_track& t, const line_pair& p) {
+  const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz, energy = detail::energy_of(t.samples) / t.rate_Hz;
+  if (!(damped_part{p.amplitude[0], p.decay_per_s, 0}.energy(lasts) + damped_part{p.amplitude[1], p.decay_per_s, 0}.energy(lasts) < 4 * energy)) return 0;
+  return log_likelihood(t, p.residual) - log_likelihood(t, t.fit.residual);
+}
+
+/// One distance for all partials of all ringings.
+struct pair_found {
+  double detuning = 0, sd = 0, gain = 0;
+  double coupling = 0, coupling_sd = 0;  ///< of the weaker line to the stronger, the same phase at the start
+  double agreeing = 0;                   ///< part of the partials that gain more than four amplitudes of noise would
+};
+
+namespace detail {
+
+inline double pair_gain(const std::vector<const partial_track*>& tracks, double relative) {
+  double sum = 0;
+  for (const auto* t : tracks) sum += gain_of_pair(*t, fit_pair(*t, relative));
+  return sum;
+}
+
+/// The weaker line against the stronger at the release, some time before the tracks begin: the delay that makes their ratio real.
+inline void describe_coupling(const std::vector<const partial_track*>& tracks, const std::vector<line_pair>& pairs, std::size_t main, pair_found& p) {
+  const auto n = static_cast<Eigen::Index>(pairs.size());
+  robust_data each{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd::Ones(n)}, best = each;
+  const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) { y.setConstant(theta[0]), J.setOnes(); };
+  double least = std::numeric_limits<double>::infinity();
+  for (double delay = 0.01; delay < 0.4; delay += 0.002) {
+    double off = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double turn = (main == 0 ? -1 : 1) * pairs[k].shift_rad_s * delay, power = std::norm(pairs[k].amplitude[main]);
+      const auto ratio = pairs[k].amplitude[1 - main] / pairs[k].amplitude[main] * std::polar(1.0, turn);
+      each.y[i] = ratio.real();
+      each.variance[i] = noise_of(*tracks[k]).away / 2 / std::max(power, 1e-300) * pairs[k].information.inverse()(2, 2) + 1e-6;
+      off += std::min(std::pow(ratio.imag(), 2) / each.variance[i], 1e3);
+    }
+    if (off < least) least = off, best = each;
+  }
+  const robust_fit fit = robust_regression(best, constant, Eigen::VectorXd::Constant(1, median_of(best.y)));
+  p.coupling = fit.value[0], p.coupling_sd = std::sqrt(fit.covariance(0, 0));
+}
+
+/// Which line is the string's own in the sensor's plane: the stronger; and how strong the other is against it.
+inline void describe_pair(const std::vector<const partial_track*>& tracks, pair_found& p) {
+  double lower = 0, upper = 0;
+  std::vector<line_pair> pairs;
+  for (const auto* t : tracks) {
+    pairs.push_back(fit_pair(*t, p.detuning));
+    const double whole = energy_of(t->samples);
+    lower += std::norm(pairs.back().amplitude[0]) / whole, upper += std::norm(pairs.back().amplitude[1]) / whole;
+    p.agreeing += gain_of_pair(*t, pairs.back()) > 4 ? 1.0 / static_cast<double>(tracks.size()) : 0;
+  }
+  const std::size_t main = upper > lower ? 1 : 0;
+  describe_coupling(tracks, pairs, main, p);
+  if (main == 1) p.sd /= std::pow(1 + p.detuning, 2), p.detuning = 1 / (1 + p.detuning) - 1;
+}
+
+}  // namespace detail
+
+/// Sought from 3e-5 to 0.02.
+[[nodiscard]] inline pair_found find_pair(const std::vector<const partial_track*>& tracks) {
+  pair_found p;
+  for (double x = 3e-5; x < 0.02; x *= 1.09)
+    if (const double g = detail::pair_gain(tracks, x); g > p.gain) p.gain = g, p.detuning = x;
+  if (p.gain <= 0) return p;
+  double step = 0.04 * p.detuning;
+  for (int i = 0; i < 24 && step > 1e-5 * p.detuning; ++i) {
+    const double here = p.detuning;
+    for (const double x : {here - step, here + step})
+      if (const double g = detail::pair_gain(tracks, x); g > p.gain) p.gain = g, p.detuning = x;
+    if (p.detuning == here) step /= 2;
+  }
+  double h = 1e-4 * p.detuning;
+  while (h < 0.3 * p.detuning && p.gain - detail::pair_gain(tracks, p.detuning + h) < 0.5) h *= 2;
+  const double curve = (detail::pair_gain(tracks, p.detuning + h) - 2 * p.gain + detail::pair_gain(tracks, p.detuning - h)) / (h * h);
+  p.sd = curve < 0 ? 1 / std::sqrt(-curve) : p.detuning;
+  detail::describe_pair(tracks, p);
+  return p;
+}
+
+}  // namespace rosin

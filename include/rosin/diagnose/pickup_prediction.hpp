@@ -1,0 +1,134 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Poles against a recording: the string's lines (gliding, where it glides) with amplitude and phase of each line free, by least squares on the
+// samples themselves. Nothing else is free, so what is left over judges frequencies and decays alone. Position and strength of the pluck,
+// the place and the response of the sensor are all in the amplitudes: they are nuisances here.
+//
+//     x(t) = sum_n Re{ A_n exp(s_n t + 2 pi i f_n relative path_n(t)) }
+//
+#pragma once
+
+#include <rosin/diagnose/pickup_glide_path.hpp>
+
+#include <complex>
+
+namespace rosin {
+
+/// One free line: the partial whose glide it shares (0: steady), and its pole.
+struct predicted_line {
+  int number = 0;
+  std::complex<double> pole;
+};
+
+/// The stretch of a recording that is to be accounted for.
+struct judged_stretch {
+  std::vector<double> x;
+  double rate_Hz = 0, start_s = 0;
+};
+
+[[nodiscard]] inline judged_stretch stretch_of(const pickup_signal& s, double start_s, double stop_s) {
+  const auto from = std::min(static_cast<std::size_t>(start_s * s.rate_Hz), s.values.size());
+  const auto to = std::clamp(static_cast<std::size_t>(stop_s * s.rate_Hz), from, s.values.size());
+  judged_stretch out{{s.values.begin() + static_cast<std::ptrdiff_t>(from), s.values.begin() + static_cast<std::ptrdiff_t>(to)}, s.rate_Hz, start_s};
+  double mean = 0;
+  for (const double v : out.x) mean += v / static_cast<double>(out.x.size());
+  for (double& v : out.x) v -= mean;
+  return out;
+}
+
+[[nodiscard]] inline double rms_of(std::span<const double> x) {
+  double sum = 0;
+  for (const double v : x) sum += v * v;
+  return x.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(x.size()));
+}
+
+namespace detail {
+
+/// A path on a coarse grid, straight in between.
+class coarse_path {
+public:
+  coarse_path(const glide_shape& shape, int number, double rate_Hz, std::size_t count) {
+    for (std::size_t j = 0; j <= count / every + 1; ++j) at_.push_back(shape.path_s(number, static_cast<double>(j * every) / rate_Hz));
+  }
+  [[nodiscard]] double operator[](std::size_t j) const {
+    const double share = static_cast<double>(j % every) / every;
+    return (1 - share) * at_[j / every] + share * at_[j / every + 1];
+  }
+
+private:
+  static constexpr std::size_t every = 32;
+  std::vector<double> at_;
+};
+
+class line_columns {
+public:
+  line_columns(const std::vector<predicted_line>& lines, const glide_found* glide, double rate_Hz, std::size_t count) : lines_{lines}, rate_Hz_{rate_Hz} {
+    if (glide == nullptr || !(glide->relative > 0)) return;
+    relative_ = glide->relative;
+    for (const auto& l : lines) paths_.emplace_back(glide->shape, l.number, rate_Hz, count);
+  }
+  /// Rows from..from + block of the design matrix: re, -im of each line.
+  void fill(std::size_t from, std::size_t block, Eigen::MatrixXd& out) const {
+    out.resize(static_cast<Eigen::Index>(block), static_cast<Eigen::Index>(2 * lines_.size()));
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      const auto s = lines_[k].pole;
+      const bool glides = !paths_.empty() && lines_[k].number > 0;
+      const auto step = std::exp(s / rate_Hz_);
+      auto z = std::exp(s * (static_cast<double>(from) / rate_Hz_));
+      for (std::size_t j = 0; j < block; ++j, z *= step) {
+        const auto v = glides ? z * std::polar(1.0, s.imag() * relative_ * paths_[k][from + j]) : z;
+        out(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(2 * k)) = v.real();
+        out(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(2 * k + 1)) = -v.imag();
+      }
+    }
+  }
+
+private:
+  const std::vector<predicted_line>& lines_;
+  double rate_Hz_, relative_ = 0;
+  std::vector<coarse_path> paths_;
+};
+
+}  // namespace detail
+
+/// What these lines leave of it.
+[[nodiscard]] inline std::vector<double> left_by_lines(const judged_stretch& s, const std::vector<predicted_line>& lines, const glide_found* glide = nullptr) {
+  constexpr std::size_t block = 512;
+  const detail::line_columns columns(lines, glide, s.rate_Hz, s.x.size());
+  const auto n = static_cast<Eigen::Index>(2 * lines.size());
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n), part;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+  const auto over = [&](const auto& what) {
+    for (std::size_t from = 0; from < s.x.size(); from += block) {
+      const std::size_t size = std::min(block, s.x.size() - from);
+      columns.fill(from, size, part);
+      what(from, Eigen::Map<const Eigen::VectorXd>(s.x.data() + from, static_cast<Eigen::Index>(size)));
+    }
+  };
+  over([&](std::size_t, const auto& x) {
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
+    right += part.transpose() * x;
+  });
+  const Eigen::VectorXd size = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = size.asDiagonal() * Eigen::MatrixXd(gram.selfadjointView<Eigen::Lower>()) * size.asDiagonal();
+  scaled.diagonal().array() += 1e-10;
+  const Eigen::VectorXd amplitude = size.cwiseProduct(scaled.ldlt().solve(size.cwiseProduct(right)));
+  std::vector<double> left(s.x.size());
+  over([&](std::size_t from, const auto& x) {
+    const Eigen::VectorXd r = x - part * amplitude;
+    std::copy(r.begin(), r.end(), left.begin() + static_cast<std::ptrdiff_t>(from));
+  });
+  return left;
+}
+
+/// The recording's own noise: the quietest of its pieces of 50 ms, of what lines that were fitted to itself leave. Noise that comes and goes,
+/// and whatever else those lines lack, does not count as noise.
+[[nodiscard]] inline double noise_in(std::span<const double> left, double rate_Hz) {
+  const auto block = std::max<std::size_t>(256, static_cast<std::size_t>(0.05 * rate_Hz));
+  double least = rms_of(left);
+  for (std::size_t j = 0; j + block <= left.size(); j += block) least = std::min(least, rms_of(left.subspan(j, block)));
+  return least;
+}
+
+}  // namespace rosin

@@ -1,0 +1,95 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Lines in a recording that are no partials of the string: harmonics of the mains, which are steady, and other strings that ring along at
+// pitches of their own. They are sought in what the string's own lines leave over. A line counts where its power is far above the median of
+// its surroundings (partial_search.hpp); one at a multiple of 50 or 60 Hz counts as hum where it is as strong in the second half as in the
+// first.
+//
+#pragma once
+
+#include <rosin/diagnose/pickup_ringing.hpp>
+
+#include <array>
+#include <complex>
+#include <functional>
+#include <optional>
+
+namespace rosin {
+
+struct stray_line {
+  double frequency_Hz = 0, amplitude = 0;  ///< peak, in the channel's unit
+  double over_floor = 0;                   ///< power against the noise around
+  double change = 1;                       ///< amplitude in the second half / in the first
+};
+
+struct stray_lines {
+  double mains_Hz = 0;  ///< 0: no hum
+  std::vector<stray_line> hum, others;
+  double resolution_Hz = 0;
+};
+
+namespace detail {
+
+/// Under a Hann window.
+inline double amplitude_of_line(std::span<const double> x, double f, double rate_Hz) {
+  std::complex<double> sum = 0, w = 1;
+  const auto turn = std::polar(1.0, -full_turn * f / rate_Hz);
+  double weight = 0;
+  for (std::size_t j = 0; j < x.size(); ++j, w *= turn) {
+    const double hann = 0.5 - 0.5 * std::cos(full_turn * (static_cast<double>(j) + 0.5) / static_cast<double>(x.size()));
+    sum += hann * x[j] * w, weight += hann;
+  }
+  return 2 * std::abs(sum) / weight;
+}
+
+inline stray_line seen_at(std::span<const double> x, double rate_Hz, const peak_finder& peaks, const peak_finder::peak& p) {
+  const std::size_t half = x.size() / 2;
+  const double first = amplitude_of_line(x.first(half), p.frequency_Hz, rate_Hz), second = amplitude_of_line(x.subspan(half), p.frequency_Hz, rate_Hz);
+  return {p.frequency_Hz, amplitude_of_line(x, p.frequency_Hz, rate_Hz), p.power / peaks.floor_at(p.frequency_Hz), second / std::max(first, 1e-300)};
+}
+
+/// The mains' harmonics that stand out and are steady.
+inline void find_hum(std::span<const double> x, double rate_Hz, const peak_finder& peaks, const std::function<bool(double)>& free, stray_lines& out) {
+  double most = 60;
+  for (const double base : {50.0, 60.0}) {
+    std::vector<stray_line> found;
+    double sum = 0, pitch = 0;
+    for (int h = 1; h <= 12; ++h) {
+      const double reach = 0.003 * base * h + peaks.bin_Hz();
+      const auto p = peaks.strongest(base * h - reach, base * h + reach);
+      if (!p || !free(p->frequency_Hz)) continue;
+      const stray_line line = seen_at(x, rate_Hz, peaks, *p);
+      if (line.change < 0.6 || line.change > 1.6) continue;
+      found.push_back(line);
+      sum += line.over_floor, pitch += line.over_floor * line.frequency_Hz / h;
+    }
+    if (sum > most) most = sum, out.mains_Hz = pitch / sum, out.hum = found;
+  }
+}
+
+}  // namespace detail
+
+/// `own`: frequencies of the string's partials, each with `near_Hz` around it out of bounds. Precondition: a second of sound or so.
+[[nodiscard]] inline stray_lines find_strays(std::span<const double> residual, double rate_Hz, const std::vector<double>& own, double near_Hz, double highest_Hz) {
+  const detail::peak_finder peaks{residual, rate_Hz, 60};
+  stray_lines out;
+  out.resolution_Hz = 4 * peaks.bin_Hz();
+  const auto free = [&](double f) {
+    return std::none_of(own.begin(), own.end(), [&](double g) { return std::abs(f - g) < std::max(near_Hz, out.resolution_Hz); });
+  };
+  detail::find_hum(residual, rate_Hz, peaks, free, out);
+  for (double f = 30; f < highest_Hz; f += 4) {
+    const auto p = peaks.strongest(f, f + 4);
+    if (!p || !free(p->frequency_Hz) || p->power < 60 * peaks.floor_at(p->frequency_Hz)) continue;
+    if (out.mains_Hz > 0 && std::abs(p->frequency_Hz - out.mains_Hz * std::round(p->frequency_Hz / out.mains_Hz)) < out.resolution_Hz) continue;
+    if (!out.others.empty() && std::abs(out.others.back().frequency_Hz - p->frequency_Hz) < out.resolution_Hz) continue;
+    const stray_line line = detail::seen_at(residual, rate_Hz, peaks, *p);
+    if (line.change > 0.02 && line.change < 5) out.others.push_back(line);
+  }
+  std::sort(out.others.begin(), out.others.end(), [](const auto& a, const auto& b) { return a.over_floor > b.over_floor; });
+  if (out.others.size() > 12) out.others.resize(12);
+  return out;
+}
+
+}  // namespace rosin
