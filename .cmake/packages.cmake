@@ -6,8 +6,8 @@ set(ROSIN_FFT "" CACHE STRING "FFT backend of the tool: eigen, pocketfft or fftw
 set_property(CACHE ROSIN_FFT PROPERTY STRINGS "" eigen pocketfft fftw)
 
 # What an #include line of a source file says about the package behind it.
-set(rosin_packages      tomlplusplus nlohmann_json sndfile pocketfft           fftw       matio   CLI11   valijson      openssl     alsa     jack)
-set(rosin_include_marks "<toml[+][+]/" "<nlohmann/" "<sndfile" "pocketfft_hdronly" "<fftw3[.]h" "<matio[.]h" "<CLI/" "<valijson/" "<openssl/" "<alsa/" "<jack/")
+set(rosin_packages      tomlplusplus nlohmann_json sndfile pocketfft           fftw       matio   CLI11   valijson      openssl     alsa     jack     stk)
+set(rosin_include_marks "<toml[+][+]/" "<nlohmann/" "<sndfile" "pocketfft_hdronly" "<fftw3[.]h" "<matio[.]h" "<CLI/" "<valijson/" "<openssl/" "<alsa/" "<jack/" "<stk/")
 
 function(rosin_add_package name)
   add_library(rosin_package_${name} INTERFACE)
@@ -55,6 +55,7 @@ rosin_find_plain_package(matio matio.h LIBRARIES matio)
 rosin_find_plain_package(valijson valijson/validator.hpp)
 rosin_find_plain_package(alsa alsa/asoundlib.h LIBRARIES asound)
 rosin_find_plain_package(jack jack/jack.h LIBRARIES jack)
+rosin_find_plain_package(stk stk/Stk.h LIBRARIES stk)
 
 # All that was found, for whoever may use any of it; only what is used is loaded.
 add_library(rosin_packages INTERFACE)
