@@ -67,8 +67,7 @@ exit_code run(const options& given, provenance from) {
     if (const auto why = cannot_draw()) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
-  if (!folder->rig.has_both_forces()) return fail(folder->rig.file + ": channels near and far (forces on both terminations) are needed", as_json);
-  const auto found = diagnose(folder->rig, from, given.without);
+  const auto found = folder->rig.has_both_forces() ? diagnose(folder->rig, from, given.without) : diagnose_pickups_of(folder->rig, from, given.without);
   if (!found) return fail(found.error(), as_json);
   if (!given.json_file.empty())
     if (const auto why = save_json(given.json_file, to_json(*found, from), given.force)) return fail(why->message);
@@ -95,7 +94,7 @@ void add_diagnose(CLI::App& app, exit_code& result) {
   command->footer(
       "The model that [model] declares is fitted to the plucks; what is left is set against every effect of the catalogue,\n"
       "alone and together, and judged on takes that were not fitted. Then the strokes are reconstructed with what was found,\n"
-      "and tension and contact examined. Verdicts: no-mismatch, explained, unexplained.\n"
+      "and tension and contact examined. A rig without two force channels is judged by its partials. Verdicts: no-mismatch, explained, unexplained.\n"
       "Exit status: 0 done, 2 nothing could be done.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }

@@ -108,6 +108,7 @@ figure spectrum_figure(const residual_picture& r, const rig_diagnosis& d, bool c
 }
 
 void add_figures(const rig_diagnosis& d, report_page& page) {
+  if (d.pickup) page.figures = pickup_figures(d);
   if (!d.residual) return;
   const residual_picture& r = *d.residual;
   const bool corrected = d.after && d.time_s && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) { return r.before.force_N != r.after.force_N; });
@@ -165,7 +166,7 @@ void add_ranking(const rig_diagnosis& d, report_page& page) {
     page.result.emplace_back((shown == 1 ? "likeliest: " : "runner-up: ") + (names.empty() ? "as declared" : names), "log10 of the evidence " + number(r.log10_evidence, "%.4g"));
   }
   if (d.ranking.size() > shown) page.notes.push_back(std::to_string(d.ranking.size()) + " models were tried; the likeliest are in the table, all of them in the JSON file.");
-  page.notes.emplace_back("Effects of the strokes are judged on the strokes, the others on the plucks: evidence compares exactly only within one kind.");
+  if (!d.pickup) page.notes.emplace_back("Effects of the strokes are judged on the strokes, the others on the plucks: evidence compares exactly only within one kind.");
 }
 
 void add_limits(const rig_diagnosis& d, report_page& page) {

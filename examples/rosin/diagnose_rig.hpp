@@ -4,6 +4,7 @@
 //
 #pragma once
 
+#include "report_figure.hpp"
 #include "rig_input.hpp"
 
 #include <rosin/propagate/band.hpp>
@@ -53,6 +54,21 @@ struct residual_picture {
   residual_series before, after;
 };
 
+/// One partial as a pickup heard it, and where the declared law and the corrected one have it.
+struct pickup_partial {
+  int number = 0;
+  double frequency_Hz = 0, frequency_sd = 0, decay_per_s = 0, decay_sd = 0;
+  double declared_Hz = 0, corrected_Hz = 0, declared_per_s = 0, corrected_per_s = 0;
+};
+
+/// The take of a single pickup in which simulation and recording part most.
+struct pickup_picture {
+  std::string take, channel;
+  double rate_Hz = 0, begin_s = 0, noise = 0, fundamental_Hz = 0;
+  std::vector<double> before, after;  ///< residuals
+  std::vector<pickup_partial> partials;
+};
+
 struct rig_diagnosis {
   std::string title, verdict;
   std::vector<missing_effect> missing;
@@ -69,10 +85,15 @@ struct rig_diagnosis {
   double residual_over_noise = 0;
   std::optional<residual_picture> residual;
   std::vector<std::string> assumed, warnings;
+  std::optional<pickup_picture> pickup;  ///< of a rig without two force channels
 };
 
 /// `without`: effects that the catalogue is not to know, by name.
 [[nodiscard]] rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {});
+/// The same for a rig that has not two force channels: plucks heard by pickups or microphones.
+[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {});
+[[nodiscard]] std::string pickup_statement(const missing_effect& m);
+[[nodiscard]] std::vector<figure> pickup_figures(const rig_diagnosis& d);
 /// What an effect means, with its values.
 [[nodiscard]] std::string statement_of(const missing_effect& m);
 /// A parameter of the fit in the names and units of the format; the doubt in nominal values joins the standard deviation.

@@ -93,13 +93,17 @@ inline std::vector<pickup_law> support_places(double low_Hz, double high_Hz) {
   parameters.insert(parameters.end(), e.parameters.begin(), e.parameters.end());
   law_fit best = base;
   best.log_likelihood = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < std::min<std::size_t>(4, starts.size()); ++i)
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, starts.size()); ++i)
     for (const double share : {1.0, 0.3}) {
       pickup_law at = starts[i].second;
       at.*e.strength = std::min(at.*e.strength * share, e.parameters.back().high);
       if (law_fit f = detail::law_problem(table, parameters, base.in_proportion).fit(at); f.log_likelihood > best.log_likelihood) best = f;
     }
-  return std::isfinite(best.log_likelihood) ? fit_law(table, parameters, best.law) : best;
+  if (std::isfinite(best.log_likelihood)) return fit_law(table, parameters, best.law);
+  best.parameters = parameters, best.log_likelihood = base.log_likelihood;  // nothing of it anywhere
+  best.sd = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));
+  best.sd.head(base.sd.size()) = base.sd;
+  return best;
 }
 
 /// ln L less what so many free numbers gain by chance; small tables pay more.

@@ -12,7 +12,7 @@
 namespace rosin {
 
 struct greedy_limits {
-  double worth = 7;        ///< natural logarithm of the evidence
+  double worth = 9;        ///< natural logarithm of the evidence
   double crumb = 0.08;     ///< of what was gained so far
   double alike = 5;        ///< nearer than that cannot be told apart
   int most = 4;

@@ -62,14 +62,14 @@ inline line_pair fit_pair_from(const partial_track& t, line_pair p, double relat
   p.shift_rad_s = relative * (centre + p.detuning_rad_s);
   p.amplitude = {};
   auto n = normals_of(z, t.rate_Hz, p, relative);
-  const Eigen::Vector4d c = n.matrix.topLeftCorner<4, 4>().ldlt().solve(n.gradient.head<4>());
+  const Eigen::VectorXd c = Eigen::MatrixXd(n.matrix.topLeftCorner(4, 4)).ldlt().solve(Eigen::VectorXd(n.gradient.head(4)));
   p.amplitude = {std::complex{c[0], c[1]}, std::complex{c[2], c[3]}};
   n = normals_of(z, t.rate_Hz, p, relative);
   double damping = 1e-3;
   for (int k = 0; k < 25 && damping < 1e7; ++k) {
     auto damped = n.matrix;
     damped.diagonal() *= 1 + damping;
-    const Eigen::Matrix<double, 6, 1> by = damped.ldlt().solve(n.gradient);
+    const Eigen::VectorXd by = Eigen::MatrixXd(damped).ldlt().solve(Eigen::VectorXd(n.gradient));
     line_pair next = p;
     next.amplitude[0] += std::complex{by[0], by[1]};
     next.amplitude[1] += std::complex{by[2], by[3]};
@@ -130,6 +130,11 @@ inline void describe_coupling(const std::vector<const partial_track*>& tracks, c
   robust_data each{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd::Ones(n)}, best = each;
   const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) { y.setConstant(theta[0]), J.setOnes(); };
   double least = std::numeric_limits<double>::infinity();
+  std::vector<double> sharpness;  // what an amplitude's variance is, per noise
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const Eigen::MatrixXd information = pairs[k].information;
+    sharpness.push_back(noise_of(*tracks[k]).away / 2 * information.completeOrthogonalDecomposition().pseudoInverse()(2, 2));
+  }
   for (double delay = 0.01; delay < 0.4; delay += 0.002) {
     double off = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -137,7 +142,7 @@ inline void describe_coupling(const std::vector<const partial_track*>& tracks, c
       const double turn = (main == 0 ? -1 : 1) * pairs[k].shift_rad_s * delay, power = std::norm(pairs[k].amplitude[main]);
       const auto ratio = pairs[k].amplitude[1 - main] / pairs[k].amplitude[main] * std::polar(1.0, turn);
       each.y[i] = ratio.real();
-      each.variance[i] = noise_of(*tracks[k]).away / 2 / std::max(power, 1e-300) * pairs[k].information.inverse()(2, 2) + 1e-6;
+      each.variance[i] = sharpness[k] / std::max(power, 1e-300) + 1e-6;
       off += std::min(std::pow(ratio.imag(), 2) / each.variance[i], 1e3);
     }
     if (off < least) least = off, best = each;

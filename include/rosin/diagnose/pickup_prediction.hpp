@@ -27,6 +27,14 @@ struct judged_stretch {
   double rate_Hz = 0, start_s = 0;
 };
 
+namespace detail {
+inline double power_of(std::span<const double> x) {
+  double sum = 0;
+  for (const double v : x) sum += v * v;
+  return x.empty() ? 0.0 : sum / static_cast<double>(x.size());
+}
+}  // namespace detail
+
 [[nodiscard]] inline judged_stretch stretch_of(const pickup_signal& s, double start_s, double stop_s) {
   const auto from = std::min(static_cast<std::size_t>(start_s * s.rate_Hz), s.values.size());
   const auto to = std::clamp(static_cast<std::size_t>(stop_s * s.rate_Hz), from, s.values.size());
@@ -37,11 +45,25 @@ struct judged_stretch {
   return out;
 }
 
-[[nodiscard]] inline double rms_of(std::span<const double> x) {
-  double sum = 0;
-  for (const double v : x) sum += v * v;
-  return x.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(x.size()));
+/// A single recording in two: from the attack to the middle of what is audible (four seconds at most), and from there on.
+[[nodiscard]] inline std::pair<pickup_signal, pickup_signal> halves_of(const pickup_signal& s, double nominal_Hz) {
+  const auto block = std::max<std::size_t>(1, static_cast<std::size_t>(0.05 * s.rate_Hz));
+  const double begin = detail::sound_begins_s(s.values, s.rate_Hz) + 0.05 + 2 / std::min(64.0, 0.45 * nominal_Hz);
+  std::vector<double> power;
+  for (std::size_t j = 0; j + block <= s.values.size(); j += block) power.push_back(detail::power_of(std::span<const double>{s.values}.subspan(j, block)));
+  std::vector<double> sorted = power;
+  std::sort(sorted.begin(), sorted.end());
+  std::size_t last = power.size();
+  while (last > 1 && power[last - 1] < 3 * sorted[sorted.size() / 10]) --last;
+  const double end = std::min(static_cast<double>(last * block) / s.rate_Hz, begin + 4), whole = static_cast<double>(s.values.size()) / s.rate_Hz;
+  const double middle = 0.5 * (begin + (end > begin + 0.6 ? end : std::min(whole, begin + 4)));
+  std::pair<pickup_signal, pickup_signal> out{s, s};
+  out.first.to_s = middle, out.second.from_s = middle;
+  out.second.to_s = std::min(whole, 2 * middle - begin);
+  return out;
 }
+
+[[nodiscard]] inline double rms_of(std::span<const double> x) { return std::sqrt(detail::power_of(x)); }
 
 namespace detail {
 
@@ -124,7 +146,7 @@ private:
 
 /// The recording's own noise: the quietest of its pieces of 50 ms, of what lines that were fitted to itself leave. Noise that comes and goes,
 /// and whatever else those lines lack, does not count as noise.
-[[nodiscard]] inline double noise_in(std::span<const double> left, double rate_Hz) {
+[[nodiscard]] inline double quietest_piece(std::span<const double> left, double rate_Hz) {
   const auto block = std::max<std::size_t>(256, static_cast<std::size_t>(0.05 * rate_Hz));
   double least = rms_of(left);
   for (std::size_t j = 0; j + block <= left.size(); j += block) least = std::min(least, rms_of(left.subspan(j, block)));

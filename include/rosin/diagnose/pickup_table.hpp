@@ -38,7 +38,7 @@ inline std::optional<string_line> line_of_pair(const partial_track& t, double de
   std::vector<std::complex<double>> left = t.samples;
   const line_model both{{{p.amplitude[0], p.decay_per_s, p.detuning_rad_s}, {p.amplitude[1], p.decay_per_s, p.detuning_rad_s + p.shift_rad_s}}, t.fit.model.centre_Hz, {}};
   const double noise = std::max(noise_beside(left_over(t.samples, t.rate_Hz, both), t.rate_Hz, both.parts[main], t.window).at_line, 1e-24 * energy_of(t.samples));
-  const Eigen::Matrix<double, 6, 6> covariance = noise / 2 * p.information.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd information = p.information, covariance = noise / 2 * information.completeOrthogonalDecomposition().pseudoInverse();
   return string_line{t.number, t.fit.model.centre_Hz + (p.detuning_rad_s + shift) / full_turn, std::sqrt(covariance(5, 5)) / full_turn, p.decay_per_s, std::sqrt(covariance(4, 4)), 0};
 }
 
@@ -106,18 +106,29 @@ inline line_table combined(const std::vector<std::vector<string_line>>& each) {
   return table;
 }
 
+/// No glide is exactly as modelled: two hundredths of what it shifted a partial while that was heard stay in the error.
+inline void widen(std::vector<string_line>& lines, const glide_found& g) {
+  if (!(g.relative > 0)) return;
+  for (auto& l : lines) {
+    const double heard = 0.7 / std::max(l.decay_per_s, 1e-3);
+    l.frequency_sd = std::hypot(l.frequency_sd, 0.02 * l.frequency_Hz * g.relative * g.shape.path_s(l.number, heard) / heard);
+  }
+}
+
 }  // namespace detail
 
 /// All partials of these ringings that are damped lines, the structure being known. One `glide` each, where it glides.
 [[nodiscard]] inline line_table table_of(const std::vector<pickup_ringing>& all, const structure_hypothesis& h) {
   const auto still = h.glides ? detail::steady(all, h.glide) : all;
   std::vector<std::vector<string_line>> each;
-  for (const auto& r : still) {
+  for (std::size_t k = 0; k < still.size(); ++k) {
+    const auto& r = still[k];
     auto& lines = each.emplace_back();
     for (const auto& t : r.tracks)
       if (const auto l = detail::line_of(t, h, r); l && std::isfinite(l->frequency_sd) && std::isfinite(l->decay_sd) && l->decay_sd > 0 && l->frequency_sd > 0 &&
                                                    l->frequency_sd < 0.02 * r.fundamental_Hz && l->decay_per_s > l->decay_sd)
         lines.push_back(*l);
+    if (h.glides) detail::widen(lines, h.glide[k]);
   }
   return detail::combined(each);
 }
