@@ -166,6 +166,7 @@
 #include <rosin/diagnose/isolability.hpp>
 #include <rosin/diagnose/law_choice.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
+#include <rosin/diagnose/lost_level.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/pickup_diagnosis.hpp>
 #include <rosin/diagnose/pickup_effects.hpp>

@@ -67,16 +67,15 @@ namespace detail {
   std::vector<double> rise(r.relative_m_s.size());
   const double step = 1 / r.rate_Hz, scale = 1e3 / std::pow(r.normal_N, k.capacity_power), rest = std::exp(-k.conduction_1_s * step);
   double now = 0;
-  for (std::size_t i = 0; i < rise.size(); ++i) {
-    if (slipping[i]) {
-      const double v = std::abs(r.relative_m_s[i] - r.phases.level_m_s), rate = k.conduction_1_s + k.renewal * std::sqrt(v) + k.exchange_1_m * v;
-      const double x = rate * step, keep = std::exp(-x);
-      now = now * keep + scale * v * std::abs(r.force_N[i]) * (x > 1e-9 ? (1 - keep) / rate : step);
-    } else {
-      now *= rest;
-    }
-    rise[i] = now;
-  }
+  const auto advance = [&](std::size_t i) {
+    if (!slipping[i]) return now *= rest;
+    const double v = std::abs(r.relative_m_s[i] - r.phases.level_m_s), rate = k.conduction_1_s + k.renewal * std::sqrt(v) + k.exchange_1_m * v;
+    const double x = rate * step, keep = std::exp(-x);
+    return now = now * keep + scale * v * std::abs(r.force_N[i]) * (x > 1e-9 ? (1 - keep) / rate : step);
+  };
+  const auto [first, last] = before_the_slips(r.phases, rise.size());
+  for (std::size_t i = first; i < last; ++i) advance(i);
+  for (std::size_t i = first; i < rise.size(); ++i) rise[i] = advance(i);
   return rise;
 }
 
@@ -127,13 +126,25 @@ inline void keep_smooth(stick_rows& rows, double weight = 0.1) {
   return x;
 }
 
-/// Median absolute residual of ordinary least squares: quick, for a search.
-[[nodiscard]] inline double quick_residual(const stick_design& d) {
+/// What a design leaves, quickly, for a search: the inverse of the geometric mean of Student's densities, a few passes of reweighting.
+/// (Ordinary least squares would follow the few samples at which a slip was cut too late.)
+[[nodiscard]] inline double quick_residual(const stick_design& d, double floor = 1e-6) {
   const stacked s = stack(d.rows);
-  Eigen::MatrixXd h = s.x.transpose() * s.x;
-  h.diagonal().array() += 1e-9 * h.diagonal().maxCoeff();
-  const Eigen::VectorXd r = s.y - s.x * h.ldlt().solve(s.x.transpose() * s.y);
-  return std::sqrt(r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size())));
+  const Eigen::Index n = std::max<Eigen::Index>(1, s.y.size());
+  Eigen::VectorXd weight = Eigen::VectorXd::Ones(s.y.size()), r = s.y;
+  double scale = 0, density = 0;
+  for (int pass = 0; pass < 6; ++pass) {
+    const Eigen::MatrixXd weighted = weight.asDiagonal() * s.x;
+    Eigen::MatrixXd h = s.x.transpose() * weighted;
+    h.diagonal().array() += 1e-9 * h.diagonal().maxCoeff();
+    r = s.y - s.x * h.ldlt().solve(weighted.transpose() * s.y);
+    for (int inner = 0; inner < 3; ++inner) {
+      scale = std::max(floor, std::sqrt(weight.dot(r.cwiseAbs2()) / static_cast<double>(n)));
+      weight = ((r.array().square() / (scale * scale) + student_freedom).inverse() * (student_freedom + 1)).matrix();
+    }
+  }
+  for (const double x : r) density += student_log_density(x, scale);
+  return std::exp(-density / static_cast<double>(n));
 }
 
 [[nodiscard]] inline std::vector<double> heat_along(const slip_record& r, const contact_heat_parameters<double>& heat) {
@@ -209,8 +220,13 @@ template <class Memory>
   for (const double layer : {1e-6, 3.5e-6})
     for (const double area : {0.6e-7, 1.5e-7}) remember(layer, area);
   if (best_memory < 2 * best)
-    for (double factor = 1.6; factor > 1.05; factor = std::sqrt(factor))
-      for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) remember(found.layer_m * std::pow(factor, i), found.area_per_newton_m2 * std::pow(factor, j));
+    for (double factor = 1.6; factor > 1.01; factor = std::sqrt(factor))
+      for (int round = 0; round < 4; ++round) {
+        const double before = best_memory;
+        const auto from = found;
+        for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) remember(from.layer_m * std::pow(factor, i), from.area_per_newton_m2 * std::pow(factor, j));
+        if (!(best_memory < 0.999 * before)) break;
+      }
   if (best_memory < best) out.heat_memory = true, out.heat = found;
   if (!out.heat_memory) out.design = design(out.rates, 2);
   else

@@ -33,7 +33,7 @@ struct law_verdict {
 struct law_choice {
   contact_law law = contact_law::velocity_curve;
   std::array<law_verdict, 3> laws{};  ///< in the order of contact_law
-  double margin = 0;                  ///< held-out nats by which the next best predicts worse
+  double margin = 0;                  ///< held-out nats by which the next best predicts worse; below 0: it predicts better, but not by what counts
   double friction_residual = 0;       ///< of the velocity curve, as a coefficient of friction
 };
 

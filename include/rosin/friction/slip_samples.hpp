@@ -47,16 +47,26 @@ struct slip_samples {
   return out;
 }
 
+/// Samples that stand in for what happened before the first slip that is known: as many as lie before it, from there on. A contact that
+/// was taken to be cold there would need several periods to be as warm as it is.
+[[nodiscard]] inline std::pair<std::size_t, std::size_t> before_the_slips(const contact_phases& phases, std::size_t samples) {
+  const std::size_t first = phases.slips.empty() ? 0 : phases.slips.front().begin;
+  return {first, std::min(samples, 2 * first)};
+}
+
 /// Temperature of the contact at every sample (above its surroundings), heated by the reconstructed force along the reconstructed slips.
 [[nodiscard]] inline std::vector<double> temperature_along(std::span<const double> force_N, std::span<const double> relative_m_s, const contact_phases& phases,
                                                            double normal_N, double rate_Hz, const contact_heat_parameters<double>& heat) {
   std::vector<double> rise(relative_m_s.size(), 0.0);
   const auto slipping = interior(phases.slips, relative_m_s.size(), 0);
   contact_heat<double> contact(heat);
-  for (std::size_t i = 0; i < rise.size(); ++i) {
+  const auto step = [&](std::size_t i) {
     const double slip = slipping[i] ? std::abs(relative_m_s[i] - phases.level_m_s) : 0.0;
-    rise[i] = contact(slip * std::abs(force_N[i]), slip, normal_N, 1 / rate_Hz);
-  }
+    return contact(slip * std::abs(force_N[i]), slip, normal_N, 1 / rate_Hz);
+  };
+  const auto [first, last] = before_the_slips(phases, rise.size());
+  for (std::size_t i = first; i < last; ++i) step(i);
+  for (std::size_t i = first; i < rise.size(); ++i) rise[i] = step(i);
   return rise;
 }
 
