@@ -78,8 +78,8 @@ public:
       for (const auto& p : f.effect.parameters) out.values.push_back({p.name, d_.law.best.law.*p.member, d_.law.best.sd_of(p.name)});
       d_.missing.push_back(std::move(out));
     }
-    name_strays();
     std::stable_sort(d_.missing.begin(), d_.missing.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+    name_strays();  // last, as they say nothing of the string
     rank();
   }
 
@@ -127,9 +127,12 @@ private:
     }
   }
   void rank() {
-    double all = 0;
+    double all = d_.structure.evidence + d_.law.gain;
     std::vector<std::string> names;
-    for (const auto& m : d_.missing) all += m.gain, names.push_back(m.effect);
+    for (const auto& m : d_.missing) {
+      names.push_back(m.effect);
+      if (m.effect == "mains-hum" || m.effect == "sympathetic-string") all += m.gain;
+    }
     d_.ranking.emplace_back(names, 0.0);
     if (!names.empty()) d_.ranking.emplace_back(std::vector<std::string>{}, -all);
     const auto add = [&](const std::string& name, double gain) {

@@ -14,6 +14,7 @@ namespace rosin {
 struct greedy_limits {
   double worth = 9;        ///< natural logarithm of the evidence
   double crumb = 0.08;     ///< of what was gained so far
+  double certain = 3;      ///< standard deviations that its strength is away from nothing
   double alike = 5;        ///< nearer than that cannot be told apart
   int most = 4;
 };
@@ -90,13 +91,17 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
       for (const auto& t : tried) s.alone.emplace_back(t.effect->name, std::max(t.evidence - nothing, -1e3));
     const auto good = [&](const detail::tried_effect& t) {
       const bool foretells = held == nullptr || predicted_log_likelihood(*held, t.fit) > predicted_log_likelihood(*held, s.best);
-      return t.evidence - now > std::max(limits.worth, limits.crumb * (now - nothing)) && foretells;
+      const auto strength = std::find_if(t.fit.parameters.begin(), t.fit.parameters.end(), [&](const auto& p) { return p.member == t.effect->strength; });
+      const bool there = t.fit.law.*t.effect->strength > limits.certain * t.fit.sd_of(strength->name);
+      return t.evidence - now > std::max(limits.worth, limits.crumb * (now - nothing)) && foretells && there;
     };
-    const auto best = std::find_if(tried.begin(), tried.end(), good);
+    auto best = std::find_if(tried.begin(), tried.end(), good);
     if (best == tried.end()) break;
+    for (auto other = best + 1; other != tried.end(); ++other)  // of those that cannot be told apart the simplest
+      if (other->evidence > tried.front().evidence - limits.alike && other->effect->parameters.size() < best->effect->parameters.size() && good(*other)) best = other;
     found_in_law f{*best->effect, best->evidence - now, {}};
     for (const auto& t : tried)
-      if (t.effect != best->effect && t.evidence > best->evidence - limits.alike) f.alike.push_back(t.effect->name);
+      if (t.effect != best->effect && t.evidence > tried.front().evidence - limits.alike) f.alike.push_back(t.effect->name);
     s.best = best->fit;
     s.found.push_back(std::move(f));
     detail::exchange(table, catalogue, limits, s);
