@@ -169,8 +169,7 @@ void own_up(const rosin::rig& rig, const rosin::pickup_diagnosis& p, const heard
   d.assumed.emplace_back("a place on the string is told up to its mirror image: positions count from the nearer end");
   if (plucks.halves) d.assumed.emplace_back("a single pluck: its first half was fitted, its later half foretold");
   const auto figure = [](double x) { return rosin::detail::figure(x, "%.3g"); };
-  d.assumed.push_back("with every partial's own frequency and decay instead of any law, as the fitted takes have them, pluck-residual would be " + figure(p.own_poles) +
-                      ": no law of frequencies and decays can do better");
+  d.assumed.push_back("with every partial's own frequency and decay instead of any law, as the fitted takes have them, pluck-residual would be " + figure(p.own_poles));
   if (std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::bow; }))
     d.assumed.emplace_back("the strokes were not examined: a single channel does not tell force and velocity at the contact");
   for (std::size_t i = 0; i < p.table.offset.size(); ++i)

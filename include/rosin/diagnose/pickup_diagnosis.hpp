@@ -61,7 +61,7 @@ private:
         const double power = strength_of(ringings_[i]);
         k.add(g.relative / power, std::hypot(g.sd, 0.01 * g.relative) / power);
       }
-    d_.glide_per_power = k.mean(), d_.glide_per_power_sd = std::hypot(k.sd(), 0.02 * k.mean());  // no glide is exactly proportional
+    d_.glide_per_power = k.mean(), d_.glide_per_power_sd = std::hypot(k.sd(), 0.05 * k.mean());  // so far off were simulated strings
   }
   [[nodiscard]] static double strength_of(const pickup_ringing& r) {
     double sum = 0;
@@ -94,7 +94,9 @@ private:
     std::vector<std::vector<string_line>> held;
     for (const auto& t : held_tables_) held.push_back(t.lines);
     const line_table together = held.empty() ? line_table{} : combined(held);
-    d_.law = search_law(d_.table, declared, catalogue, together.lines.size() < 4 ? nullptr : &together);
+    greedy_limits limits;
+    limits.pitch_Hz = ask_.fundamental_Hz;
+    d_.law = search_law(d_.table, declared, catalogue, together.lines.size() < 4 ? nullptr : &together, limits);
   }
 
   void find_stray_lines() {

@@ -17,6 +17,7 @@ struct greedy_limits {
   double certain = 3;      ///< standard deviations that its strength is away from nothing
   double alike = 5;        ///< nearer than that cannot be told apart
   int most = 4;
+  double pitch_Hz = 0, pitch_sd = 0.005;  ///< as declared, 0: not; relative. A law that takes the string far from it has to be better for it
 };
 
 struct found_in_law {
@@ -34,19 +35,25 @@ struct law_search {
 
 namespace detail {
 
+/// Evidence, with the declared pitch as a measurement that may be wrong altogether.
+inline double worth_of(const law_fit& f, std::size_t lines, const greedy_limits& limits) {
+  const double off = limits.pitch_Hz > 0 ? std::pow((f.law.fundamental_Hz / limits.pitch_Hz - 1) / limits.pitch_sd, 2) : 0.0;
+  return evidence_of(f, lines) - 0.5 * off / (1 + off / 100);
+}
+
 struct tried_effect {
   const law_effect* effect;
   law_fit fit;
   double evidence;
 };
 
-inline std::vector<tried_effect> try_each(const line_table& table, const law_fit& base, const std::vector<law_effect>& catalogue) {
+inline std::vector<tried_effect> try_each(const line_table& table, const law_fit& base, const std::vector<law_effect>& catalogue, const greedy_limits& limits) {
   std::vector<tried_effect> out;
   for (const auto& e : catalogue) {
     const bool there = std::any_of(base.parameters.begin(), base.parameters.end(), [&](const auto& p) { return p.member == e.strength; });
     if (there || 2 * table.lines.size() < base.parameters.size() + e.parameters.size() + 4) continue;
     law_fit f = with_effect(table, base, e);
-    out.push_back({&e, f, evidence_of(f, table.lines.size())});
+    out.push_back({&e, f, worth_of(f, table.lines.size(), limits)});
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
   return out;
@@ -64,13 +71,13 @@ inline law_fit without_effect(const line_table& table, const law_fit& fit, const
 inline void exchange(const line_table& table, const std::vector<law_effect>& catalogue, const greedy_limits& limits, law_search& s) {
   for (std::size_t i = 0; i < s.found.size() && s.found.size() > 1;) {
     const law_fit less = without_effect(table, s.best, s.found[i].effect);
-    const double now = evidence_of(s.best, table.lines.size()), before = evidence_of(less, table.lines.size());
+    const double now = worth_of(s.best, table.lines.size(), limits), before = worth_of(less, table.lines.size(), limits);
     if (now - before < limits.worth) {
       s.best = less;
       s.found.erase(s.found.begin() + static_cast<std::ptrdiff_t>(i));
       continue;
     }
-    const auto others = try_each(table, less, catalogue);
+    const auto others = try_each(table, less, catalogue, limits);
     if (!others.empty() && others.front().evidence > now + 3 && others.front().effect->name != s.found[i].effect.name)
       s.best = others.front().fit, s.found[i] = {*others.front().effect, others.front().evidence - before, {}};
     ++i;
@@ -83,10 +90,10 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
 [[nodiscard]] inline law_search search_law(const line_table& table, const law_fit& declared, const std::vector<law_effect>& catalogue, const line_table* held,
                                            const greedy_limits& limits = {}) {
   law_search s{declared, declared, {}, {}, 0};
-  const double nothing = evidence_of(declared, table.lines.size());
+  const double nothing = detail::worth_of(declared, table.lines.size(), limits);
   for (int round = 0; round < limits.most; ++round) {
-    const auto tried = detail::try_each(table, s.best, catalogue);
-    const double now = evidence_of(s.best, table.lines.size());
+    const auto tried = detail::try_each(table, s.best, catalogue, limits);
+    const double now = detail::worth_of(s.best, table.lines.size(), limits);
     if (round == 0)
       for (const auto& t : tried) s.alone.emplace_back(t.effect->name, std::max(t.evidence - nothing, -1e3));
     const auto good = [&](const detail::tried_effect& t) {
@@ -106,7 +113,7 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
     s.found.push_back(std::move(f));
     detail::exchange(table, catalogue, limits, s);
   }
-  s.gain = evidence_of(s.best, table.lines.size()) - nothing;
+  s.gain = detail::worth_of(s.best, table.lines.size(), limits) - nothing;
   return s;
 }
 
