@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/pickup_findings.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace rosin;
+
+TEST_CASE("pickup_namer: strays become hum and strings, and evidence adds up") {
+  pickup_diagnosis d;
+  d.structures = {{}};
+  d.strays.mains_Hz = 50, d.strays.resolution_Hz = 1;
+  d.strays.hum = {{50, 0.1, 200, 1}, {150, 0.05, 50, 1}};
+  d.strays.others = {{329.6, 0.2, 400, 0.5}, {659.3, 0.1, 90, 0.5}, {247, 0.01, 80, 0.6}};
+  d.law.alone = {{"bending-stiffness", 3.0}};
+  const pickup_question ask{220, {}, {}};
+  detail::pickup_namer{d, ask}.name_all();
+  REQUIRE(d.missing.size() == 3);
+  CHECK(d.missing[0].effect == "mains-hum");
+  CHECK(d.missing[1].values[0].value == doctest::Approx(247));
+  CHECK(d.missing[2].effect == "sympathetic-string");
+  CHECK(d.missing[2].gain == doctest::Approx(490));  // with its second partial
+  CHECK(d.missing[2].values[0].value == doctest::Approx(329.6));
+  REQUIRE(d.ranking.size() > 2);
+  CHECK(d.ranking.front().first.size() == 3);
+  CHECK(d.ranking.front().second == 0);
+  for (const auto& [names, gain] : d.ranking)
+    if (names == std::vector<std::string>{"bending-stiffness"}) CHECK(gain == doctest::Approx(3.0 - 820));
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/pickup_glide_path.hpp>
+
+#include <doctest/doctest.h>
+
+#include "pickup_plucks.hpp"
+
+using namespace rosin;
+
+TEST_CASE("glide_shape: path by hand") {
+  const glide_shape s{{0.75, 0.25}, {2, 6}, {1, 3}, "two"};
+  const auto part = [](double p, double k, double t) { return p * (1 - std::exp(-k * t)) / k; };
+  CHECK(s.path_s(2, 0.5) == doctest::Approx(part(0.75, 2, 0.5) + part(0.25, 6, 0.5)));
+  CHECK(s.path_s(3, 0.5) == doctest::Approx(part(0.75, 2, 0.5) + 1.5 * part(0.25, 6, 0.5)));
+}
+
+TEST_CASE("find_glide: E A of a simulated string within some per cent; none where there is none") {
+  rosin_test::heard_string s;
+  s.burden.axial_stiffness_N = 5000;
+  const auto r = listen(s.pluck("a", 0.13, 2, 1), 220);
+  REQUIRE(r);
+  const glide_found g = find_glide(*r, true);
+  double slopes = 0;
+  for (const double p : r->power) slopes += p / (s.tension_N * s.tension_N);
+  CHECK(16 * s.tension_N * g.relative / slopes == doctest::Approx(5000).epsilon(0.07));
+  CHECK(g.gain > 300);
+  CHECK(g.agreeing > 0.9);
+
+  s.burden.axial_stiffness_N = 0;
+  const auto steady = listen(s.pluck("a", 0.13, 2, 1), 220);
+  REQUIRE(steady);
+  CHECK(find_glide(*steady, true).gain < 6);
+}

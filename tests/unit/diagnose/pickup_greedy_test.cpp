@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/pickup_greedy.hpp>
+
+#include <doctest/doctest.h>
+
+#include "pickup_tables.hpp"
+
+using namespace rosin;
+
+namespace {
+
+std::vector<std::string> names_in(const line_table& t) {
+  const law_fit base = fit_law(t, ideal_string(200), {.fundamental_Hz = 200, .inverse_q = 1e-3});
+  std::vector<std::string> out;
+  for (const auto& f : search_law(t, base, law_effects(200, t.lines.back().number), nullptr).found) out.push_back(f.effect.name);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("search_law: two effects together, one after the other") {
+  const pickup_law both{.fundamental_Hz = 200, .inharmonicity = 5e-5, .inverse_q = 1e-3, .internal_s = 4e-7};
+  CHECK(names_in(rosin_test::table_from(both, 14, 0.003, 0.01, 1)) == std::vector<std::string>{"bending-stiffness", "frequency-dependent-loss"});
+}
+
+TEST_CASE("search_law: the scatter of real partials is not named") {
+  const pickup_law plain{.fundamental_Hz = 200, .inverse_q = 1e-3};
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) CHECK(names_in(rosin_test::table_from(plain, 12, 0.1, 0.15, seed)).empty());
+}
