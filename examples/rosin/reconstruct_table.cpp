@@ -79,7 +79,8 @@ std::string dc_text(const take_reconstruction& r) {
   if (!r.ac_coupled) return "measured (DC coupled sensors)";
   if (!r.dc.available) return "unknown: AC coupled sensors; force_N has no mean of its own";
   return "unknown: AC coupled sensors; estimated as " + in_digits(r.dc.level_N, "%+.3f") + " +- " + in_digits(r.dc.sd_N, "%.3f") +
-         " N to be added (a friction coefficient of 0.65 +- 0.15 in mid-slip times the normal force); not added in the file";
+         " N to be added (" + (r.dc_from == "thermal-law" ? "the slips follow the contact's temperature, whose heat knows where zero is" : "a friction coefficient of 0.65 +- 0.15 in mid-slip times the normal force") +
+         "); not added in the file";
 }
 
 }  // namespace
@@ -187,7 +188,7 @@ json to_json(const take_reconstruction& r, const provenance& from) {
                   {"scale_relative_sd", sd.force_scale}, {"steady_minimum_N", number(low)}, {"steady_maximum_N", number(high)}};
   out["velocity"] = {{"random_sd_m_s", number(std::sqrt(mean_square(r.velocity_sd_m_s, r.known)))}, {"noise_sd_m_s", sd.velocity_noise_m_s},
                      {"model_sd_m_s", sd.velocity_model_m_s}, {"scale_relative_sd", sd.velocity_scale}};
-  out["dc_level"] = r.dc.available ? json{{"estimate_N", r.dc.level_N}, {"sd_N", r.dc.sd_N}, {"added", false}} : json(nullptr);
+  out["dc_level"] = r.dc.available ? json{{"estimate_N", r.dc.level_N}, {"sd_N", r.dc.sd_N}, {"from", r.dc_from}, {"added", false}} : json(nullptr);
   out["period_s"] = r.period_s > 0 ? json(r.period_s) : json(nullptr);
   out["steady_s"] = {r.time_s(part.begin), r.time_s(part.end)};
   out["slips"] = json::array();

@@ -290,8 +290,7 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   add_rod_and_normal_force(rig, take, read, r);
   find_slips(r);
   add_comparisons(rig, take, read, r);
-  if (r.ac_coupled && !r.rod_m_s.empty() && r.normal_force_N)
-    r.dc = rosin::estimate_dc_level(r.force_N, r.velocity_m_s, r.rod_m_s[(r.known.begin + r.known.end) / 2], *r.normal_force_N);
+  estimate_level(rig, r);
   judge(rig, r);
   return r;
 }

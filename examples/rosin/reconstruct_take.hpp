@@ -45,6 +45,7 @@ struct take_reconstruction {
   std::optional<double> normal_force_N;
   bool ac_coupled = false;
   rosin::dc_estimate dc;
+  std::string dc_from;                   ///< "thermal-law" or "usual-friction"
   std::vector<std::pair<std::size_t, std::size_t>> slips;
   std::size_t steady_begin = 0, steady_end = 0;  ///< where the motion is most nearly periodic
   double period_s = 0;
@@ -58,6 +59,9 @@ struct take_reconstruction {
 
 [[nodiscard]] rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, const rosin::take& take, const checked_take& read,
                                                                    const calibration_set& calibration, const take_options& how);
+
+/// The level that AC-coupled sensors lost: by a fitted law of friction where that knows zero, otherwise by what friction usually is.
+void estimate_level(const rosin::rig& rig, take_reconstruction& r);
 
 /// The table of the format "reconstruction", with its comment lines.
 [[nodiscard]] rosin::table table_of(const take_reconstruction& r, const provenance& from);

@@ -45,7 +45,7 @@ judged_level judge_level(rosin::contact_law kind, std::uint64_t& seed) {
 }  // namespace
 
 TEST_CASE("levels lost to AC coupling, on 30 random rigs: errors as large as stated") {
-  int within = 0, told = 0;
+  int within = 0, told = 0;  // told: heat that is not there
   for (const auto kind : {rosin::contact_law::velocity_curve, rosin::contact_law::thermal, rosin::contact_law::elasto_plastic}) {
     std::uint64_t seed = 1;
     for (int i = 0; i < 10; ++i) {
@@ -53,10 +53,10 @@ TEST_CASE("levels lost to AC coupling, on 30 random rigs: errors as large as sta
       std::printf("law %d, rig %2d: %s; off by %+.3f +- %.3f (%+.1f sd), strokes apart by %.3f\n", static_cast<int>(kind), static_cast<int>(r.seed), r.heat_told ? "heat knows zero" : "usual friction", r.error, r.sd,
                   r.error / r.sd, r.apart);
       within += std::abs(r.error) < 2 * r.sd ? 1 : 0;
-      told += r.heat_told == (kind == rosin::contact_law::thermal) ? 1 : 0;
+      told += r.heat_told && kind != rosin::contact_law::thermal ? 1 : 0;
     }
   }
-  std::printf("within 2 sd: %d of 30; heat told from no heat: %d of 30\n", within, told);
+  std::printf("within 2 sd: %d of 30; heat where there is none: %d\n", within, told);
   CHECK(within >= 26);
-  CHECK(told >= 28);
+  CHECK(told == 0);
 }

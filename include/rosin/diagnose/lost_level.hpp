@@ -26,6 +26,7 @@ struct lost_levels {
   std::vector<lost_level> takes{};                ///< in the order of the strokes
   double common_sd = 0;                           ///< of what all share, as a coefficient of friction
   double gain = 0;                                ///< of the thermal law over the curve, nats
+  double left = 0;                                ///< by the thermal law, as a coefficient of friction
 };
 
 namespace detail {
@@ -146,6 +147,20 @@ struct heat_objective {
   return at;
 }
 
+/// Coarsely over all three, the two best of them a little on their way: there is more than one valley.
+[[nodiscard]] inline Eigen::Vector3d best_start(const heat_objective& objective) {
+  std::vector<std::pair<double, Eigen::Vector3d>> tried;
+  for (const double layer : {6e-7, 4e-6})
+    for (const double area : {0.6e-7, 1.4e-7})
+      for (const double mu : {-0.2, -0.05, 0.1}) {
+        const Eigen::Vector3d at(std::log(layer), std::log(area), objective.usual + mu);
+        tried.emplace_back(objective(at), at);
+      }
+  std::sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const Eigen::Vector3d step(0.4, 0.2, 0.04), a = descend(objective, tried[0].second, step, 2), b = descend(objective, tried[1].second, step, 2);
+  return objective(a) < objective(b) ? a : b;
+}
+
 /// From the inverse of the second derivatives, never more than the prior's width.
 [[nodiscard]] inline double sd_of_common(const heat_objective& objective, const Eigen::Vector3d& at) {
   const Eigen::Vector3d step(0.25, 0.1, 0.04);
@@ -166,8 +181,9 @@ struct heat_objective {
 }  // namespace detail
 
 /// Levels of strokes whose mean force is unknown. Precondition: each has 100 slip samples and a normal force. `law_error`: by how much
-/// the level of a thermal law is off, as a coefficient of friction, beside what noise does.
-[[nodiscard]] inline lost_levels find_lost_levels(const std::vector<slip_record>& records, double floor = 0.003, double law_error = 0.06) {
+/// the level of a thermal law is off, as a coefficient of friction, where it leaves no more than `floor`. A thermal law that leaves much more
+/// is not that of the contact to the point, and what it says of zero is worse than the usual range: then that is used.
+[[nodiscard]] inline lost_levels find_lost_levels(const std::vector<slip_record>& records, double floor = 0.003, double law_error = 0.04) {
   detail::level_search search(records);
   for (int pass = 0; pass < 2; ++pass) search.settle(fit_design(search.curve(), floor));
   search.centre();
@@ -176,18 +192,20 @@ struct heat_objective {
   out.common_sd = detail::usual_doubt;
   detail::heat_objective objective{search, curve.solution.effective, floor, 0};
   if (curve.solution.scale > 2 * floor) {
-    Eigen::Vector3d at(std::log(2e-6), std::log(1e-7), 0);
+    Eigen::Vector3d at = detail::best_start(objective);
     for (int round = 0; round < 2; ++round) {
-      at = detail::descend(objective, at, round == 0 ? Eigen::Vector3d(0.5, 0.4, 0.08) : Eigen::Vector3d(0.1, 0.1, 0.02), 4);
+      at = detail::descend(objective, at, round == 0 ? Eigen::Vector3d(0.2, 0.1, 0.02) : Eigen::Vector3d(0.1, 0.1, 0.02), 4);
       objective.search.add_to_all(at[2]);
       objective.usual -= at[2], at[2] = 0;
       objective.search.settle(fit_design(objective.search.heated({.layer_m = std::exp(at[0]), .area_per_newton_m2 = std::exp(at[1])}), floor));
     }
-    const double left = detail::quick_residual(objective.search.heated({.layer_m = std::exp(at[0]), .area_per_newton_m2 = std::exp(at[1])}), floor);
-    out.gain = objective.independent * std::log(detail::quick_residual(search.curve(), floor) / left);
-    if (out.gain > 30) {
+    const auto fit = fit_design(objective.search.heated({.layer_m = std::exp(at[0]), .area_per_newton_m2 = std::exp(at[1])}), floor);
+    out.gain = objective.independent * std::log(curve.solution.scale / fit.solution.scale);
+    out.left = fit.solution.scale;
+    const double sd = std::hypot(detail::sd_of_common(objective, at), law_error * out.left / floor);
+    if (out.gain > 30 && out.left < 1.4 * floor && sd < detail::usual_doubt) {
       out.law = contact_law::thermal;
-      out.common_sd = std::hypot(detail::sd_of_common(objective, at), law_error);
+      out.common_sd = sd;
       search = objective.search;
     }
   }
