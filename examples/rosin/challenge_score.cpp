@@ -13,7 +13,6 @@ namespace tool {
 
 namespace {
 
-
 bool same_effect(const std::string& hidden, const json& said) {
   if (said.at("effect") == hidden) return true;
   const auto& others = said.at("indistinguishable_from");

@@ -252,6 +252,11 @@ inline double held_out_gain(const scene_data& data, const scene_fit& fit, const 
   const bool complete = d.best.quality.inflation() == 1.0 || excess < std::max(0.5 * d.floor, 0.12 * was);
   d.mismatched = d.mismatched || d.best.quality.inflation() > 1.5;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
+  if (!d.explained && excess > 0.5 * was) {  // what leaves more than half is no part of the answer; the ranking keeps it
+    d.best = plain;
+    d.found_gain.clear(), d.alternatives.clear();
+    d.after = d.before;
+  }
   return d;
 }
 
