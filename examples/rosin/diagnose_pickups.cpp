@@ -84,33 +84,30 @@ string_scale scale_of(const rosin::rig_values& v, double f0, bool calibrated_for
   return s;
 }
 
-diagnosed_value times(const char* name, const rosin::found_value& v, double value, double sd, double relative_sd) {
-  (void)v;
-  return {name, value, std::hypot(sd, relative_sd * value)};
-}
-
 double relative_sd(const rosin::nominal& n) { return n.sd / n.value; }
 
+/// With the doubt in what it was scaled by.
+diagnosed_value scaled(const char* name, double value, double sd, double doubt) { return {name, value, std::hypot(sd, doubt * value)}; }
+
 /// A value in SI units where the rig file gives what that takes, otherwise as a ratio under a name that says so.
-diagnosed_value named(const rosin::found_value& v, const std::string& effect, const string_scale& s, const rosin::pickup_diagnosis& p) {
+diagnosed_value named(const rosin::found_value& v, const string_scale& s, const rosin::pickup_diagnosis& p) {
   const auto& Z = s.impedance_Ns_m;
   if (v.name == "inharmonicity" && s.tension_N && s.length_m) {
     const double per = s.tension_N->value * std::pow(s.length_m->value / std::numbers::pi, 2);
-    return times("bending_stiffness_Nm2", v, v.value * per, v.sd * per, std::hypot(relative_sd(*s.tension_N), 2 * relative_sd(*s.length_m)));
+    return scaled("bending_stiffness_Nm2", v.value * per, v.sd * per, std::hypot(relative_sd(*s.tension_N), 2 * relative_sd(*s.length_m)));
   }
-  if (v.name == "mass") return s.mass_kg ? times("mass_kg", v, v.value * s.mass_kg->value, v.sd * s.mass_kg->value, relative_sd(*s.mass_kg)) : diagnosed_value{"mass_over_string", v.value, v.sd};
+  if (v.name == "mass") return s.mass_kg ? scaled("mass_kg", v.value * s.mass_kg->value, v.sd * s.mass_kg->value, relative_sd(*s.mass_kg)) : diagnosed_value{"mass_over_string", v.value, v.sd};
   if (v.name == "lightness") {
     const double ratio = 1 / v.value, sd = v.sd * ratio * ratio;
-    return s.mass_kg ? times("mass_kg", v, ratio * s.mass_kg->value, sd * s.mass_kg->value, relative_sd(*s.mass_kg)) : diagnosed_value{"mass_over_string", ratio, sd};
+    return s.mass_kg ? scaled("mass_kg", ratio * s.mass_kg->value, sd * s.mass_kg->value, relative_sd(*s.mass_kg)) : diagnosed_value{"mass_over_string", ratio, sd};
   }
-  if (v.name == "resistance") return Z ? times("resistance_Ns_m", v, v.value * Z->value, v.sd * Z->value, relative_sd(*Z)) : diagnosed_value{"resistance_over_impedance", v.value, v.sd};
-  if (v.name == "conductance") return Z ? times("resistance_Ns_m", v, Z->value / v.value, Z->value * v.sd / (v.value * v.value), relative_sd(*Z)) : diagnosed_value{"conductance_times_impedance", v.value, v.sd};
+  if (v.name == "resistance") return Z ? scaled("resistance_Ns_m", v.value * Z->value, v.sd * Z->value, relative_sd(*Z)) : diagnosed_value{"resistance_over_impedance", v.value, v.sd};
+  if (v.name == "conductance") return Z ? scaled("resistance_Ns_m", Z->value / v.value, Z->value * v.sd / (v.value * v.value), relative_sd(*Z)) : diagnosed_value{"conductance_times_impedance", v.value, v.sd};
   if (v.name == "pitch_rise" && s.calibrated_force && s.tension_N) {
     const double per = 16 * std::pow(s.tension_N->value, 3);
-    return times("axial_stiffness_N", v, per * p.glide_per_power, per * p.glide_per_power_sd, 3 * relative_sd(*s.tension_N));
+    return scaled("axial_stiffness_N", per * p.glide_per_power, per * p.glide_per_power_sd, 3 * relative_sd(*s.tension_N));
   }
   if (v.name == "amplitude") return {s.calibrated_force ? "amplitude_N" : "amplitude_full_scale", v.value, v.sd};
-  (void)effect;
   return {v.name, v.value, v.sd};
 }
 
@@ -119,7 +116,7 @@ missing_effect described(const rosin::pickup_finding& f, const string_scale& s, 
   m.effect = f.effect;
   m.probability = (1 - std::exp(-std::min(30.0, f.gain))) / (1 + static_cast<double>(f.alike.size()));
   m.indistinguishable_from = f.alike;
-  for (const auto& v : f.values) m.parameters.push_back(named(v, f.effect, s, p));
+  for (const auto& v : f.values) m.parameters.push_back(named(v, s, p));
   for (const auto& v : m.parameters)
     if (v.name == "position") m.position = v.value;
   m.statement = pickup_statement(m);

@@ -62,6 +62,15 @@ holds plain.json '$d->{verdict} eq "no-mismatch" && !@{$d->{missing}} && !define
   'about($d->{fit}{before}, $d->{fit}{noise_floor}, 0.2)'
 expect 0 validate plain.json
 
+# One channel that knows of no newton goes through the same door: partials alone, and what is declared is all there is.
+make heard
+perl -i -0pe 's/^near.*\n//m; s/^far.*/coil = { index = 1, quantity = "string-velocity", position = 0.2 }/m' heard/rig.toml
+expect 0 diagnose heard --json heard.json
+says "no-mismatch" "assumed: amplitude and phase of every partial are free" "assumed: the strokes were not examined"
+holds heard.json '$d->{verdict} eq "no-mismatch" && !@{$d->{missing}}' 'about($d->{fit}{before}, $d->{fit}{noise_floor}, 0.2)' \
+  '"@{$d->{fit}{held_out}}" eq "pluck-3"' 'about($d->{calibration}{fundamental_Hz}{value}, 240.31, 1e-4)' 'about($d->{calibration}{inverse_quality}{value}, 1 / 800, 0.01)'
+expect 0 validate heard.json
+
 # Nothing is overwritten unasked, and that is said before the work.
 before=$(sha256sum plain.json)
 expect 2 diagnose plain --json plain.json
@@ -80,7 +89,7 @@ expect 2 diagnose none
 says "no pluck to compare with"
 variant pickup 's/^near.*\n//m; s/^far.*/coil = { index = 0, quantity = "string-velocity", position = 0.2 }/m'
 expect 2 diagnose pickup
-says "channels near and far (forces on both terminations) are needed"
+says "pluck-2, channel coil: not used: signal: less than 0.15"
 variant gone 's/pluck-1\.wav/nothing.wav/'
 rm gone/pluck-2.wav
 expect 2 diagnose gone
