@@ -5,6 +5,7 @@
 #include "calibration_file.hpp"
 #include "commands.hpp"
 #include "diagnose_rig.hpp"
+#include "progress.hpp"
 #include "report_figure.hpp"
 
 #include <iostream>
@@ -57,6 +58,12 @@ exit_code tell_isolability(const options& given, provenance from) {
   return exit_code::ok;
 }
 
+rosin::outcome<rig_diagnosis> diagnosis_of(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without) {
+  if (!rig.has_both_forces()) return diagnose_pickups_of(rig, from, without);
+  progress bar{"diagnosing", diagnosis_steps};
+  return diagnose(rig, from, without, [&] { bar.step(); });
+}
+
 exit_code run(const options& given, provenance from) {
   if (given.isolability) return tell_isolability(given, std::move(from));
   const bool as_json = given.json_file == "-";
@@ -67,7 +74,7 @@ exit_code run(const options& given, provenance from) {
     if (const auto why = cannot_draw()) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
-  const auto found = folder->rig.has_both_forces() ? diagnose(folder->rig, from, given.without) : diagnose_pickups_of(folder->rig, from, given.without);
+  const auto found = diagnosis_of(folder->rig, from, given.without);
   if (!found) return fail(found.error(), as_json);
   if (!given.json_file.empty())
     if (const auto why = save_json(given.json_file, to_json(*found, from), given.force)) return fail(why->message);

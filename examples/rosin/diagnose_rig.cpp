@@ -153,6 +153,14 @@ bool is_hum(const rosin::contact_hypothesis& h, const rig_diagnosis& d) {
   });
 }
 
+/// Before and floor are those of what the contact is judged by.
+void judge_by(const std::string& statistic, const rosin::contact_findings& found, rig_diagnosis& d) {
+  d.metric = statistic.empty() ? "stick-fluctuation" : statistic;
+  d.before = d.metric == "friction-residual" ? found.friction_residual : found.stick_fluctuation;
+  d.noise_floor = d.metric == "friction-residual" ? found.friction_floor : found.stick_floor;
+  d.after = d.before;
+}
+
 /// Takes up the likeliest contact effect where it gains clearly; true if there was one. `found` is of the model with `sofar` nats gained.
 bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d) {
   if (sofar == 0)
@@ -185,9 +193,7 @@ bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d)
     if (found.hypotheses[i].gain > best.gain - 5) m.indistinguishable_from.push_back(found.hypotheses[i].effect);
   d.missing.push_back(m);
   if (d.missing.size() > 1) return true;
-  d.metric = best.statistic.empty() ? "stick-fluctuation" : best.statistic;
-  d.before = d.metric == "friction-residual" ? found.friction_residual : found.stick_fluctuation;
-  d.noise_floor = d.metric == "friction-residual" ? found.friction_floor : found.stick_floor;
+  judge_by(best.statistic, found, d);
   d.after = best.fluctuation;
   return true;
 }
@@ -212,7 +218,10 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     found = contact_of(rig, strokes, plain_string, model);
     if (d.metric == "stick-fluctuation") d.after = found.stick_fluctuation;
   }
-  if (d.missing.size() == others) return found.as_declared || others > 0;
+  if (d.missing.size() == others) {
+    if (!found.as_declared && others == 0) judge_by(found.hypotheses.front().statistic, found, d);
+    return found.as_declared || others > 0;
+  }
   if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
@@ -229,12 +238,13 @@ void rank(rig_diagnosis& d) {
 
 }  // namespace
 
-rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without) {
+rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without, const std::function<void()>& step) {
   rig_diagnosis d;
   d.title = rig.title.value_or(rig.file);
   const rosin::rig_values values = rosin::values_of(rig);
   d.assumed = values.assumed;
   auto plucks = diagnose_plucks_of(rig, values, from, d, without);
+  step();
   if (!plucks) return rosin::failure{plucks.error()};
   const rosin::pluck_diagnosis& p = *plucks;
   take_over(p, values, d);
@@ -246,6 +256,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   if (p.explained && values.impedance_Ns_m) strokes = reconstruct_strokes(rig, values, p, 0, from, d.warnings);
   else if (std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::bow; }))
     d.assumed.emplace_back("the strokes were not examined: the contact cannot be seen past what the plucks leave unexplained");
+  step();
   if (!strokes.empty()) {
     const rosin::tension_drift drift = drift_of(strokes, p);
     if (drifted(drift) && std::find(without.begin(), without.end(), "tension-drift") == without.end()) {
@@ -253,6 +264,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
       else add_drift(drift, d);
       strokes = reconstruct_strokes(rig, values, p, drift.relative, from, d.warnings);
     }
+    step();
     contact_open = !examine_contact(rig, strokes, plain_string, without, d);
   }
   rank(d);

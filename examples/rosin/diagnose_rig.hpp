@@ -10,6 +10,7 @@
 #include <rosin/propagate/band.hpp>
 
 #include <array>
+#include <functional>
 
 namespace rosin {
 struct pluck_diagnosis;
@@ -88,8 +89,10 @@ struct rig_diagnosis {
   std::optional<pickup_picture> pickup;  ///< of a rig without two force channels
 };
 
-/// `without`: effects that the catalogue is not to know, by name.
-[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {});
+inline constexpr std::size_t diagnosis_steps = 4;
+/// `without`: effects that the catalogue is not to know, by name. `step` is called when plucks, strokes, tension have been seen to.
+[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {},
+                                                     const std::function<void()>& step = [] {});
 /// The same for a rig that has not two force channels: plucks heard by pickups or microphones.
 [[nodiscard]] rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {});
 [[nodiscard]] std::string pickup_statement(const missing_effect& m);

@@ -164,6 +164,16 @@ inline double held_out_gain(const scene_data& data, const scene_fit& fit, const 
   return gain;
 }
 
+/// Whether there is a mismatch of which the best of `fits` leaves more than half (in amplitude): over all of a record, what is small
+/// per period may have turned partials too far for a score test.
+inline bool leaves_much(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits, std::array<double, 2> noise) {
+  if (fits.empty() || !(fits.front().quality.inflation() > 1.5)) return false;
+  const scene_fit plain = fit_scene(data, before.effects, before.value, {{1000, fits.front().horizon_periods, true}}, noise);
+  double expected = 0;
+  for (const double n : fits.front().quality.samples) expected += n;
+  return cost_of(fits.front(), noise) - expected > 0.25 * (cost_of(plain, noise) - expected);
+}
+
 }  // namespace detail
 
 /// `catalogue`: effects that the declared model does not contain. Takes in `held` are predicted only.
@@ -185,7 +195,8 @@ inline double held_out_gain(const scene_data& data, const scene_fit& fit, const 
     for (const pluck_effect& e : all)
       if (std::none_of(now.effects.begin(), now.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);
     const bool strong = round == 0 ? declared->horizon_periods < 1e8 || declared->residual_ratio[0] > 0.05 : now.quality.residual_ratio[0] > 0.1;
-    const std::vector<scene_fit> fits = one_more_effect(d.data, now, catalogue, strong, weigh);
+    std::vector<scene_fit> fits = one_more_effect(d.data, now, catalogue, strong, weigh);
+    if (round == 0 && !strong && detail::leaves_much(d.data, now, fits, weigh)) fits = one_more_effect(d.data, now, catalogue, true, weigh);
     if (fits.empty() && round == 0) {  // nothing is worth a fit
       d.base = fit_scene(d.data, {}, now.value, {{1000, now.horizon_periods, true}}, weigh);
       noise = d.base.quality.noise;
