@@ -141,7 +141,7 @@ inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fi
     const double cost = cost_of(f, noise);
     if (cost < 1e299 && (!best || cost < cost_of(*best, noise))) best = std::move(f);
   };
-  const auto from = [&](const scored_start& s) { return extended(already.value, e, s.values); };
+  const auto from = [&](const scored_start& s) { return extended(data.layout, already.value, e, s.values); };
   if (!strong) {
     for (const auto& s : starts) keep(fit_scene(data, effects, from(s), {{}}, noise));
     return best;

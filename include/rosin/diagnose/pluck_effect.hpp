@@ -47,6 +47,8 @@ struct pluck_effect {
   std::function<void(std::vector<pluck_take>&, const pluck_layout&, const Eigen::VectorXd& v, double value)> undo{};
   /// With it: the linear string that comes nearest in a take, so that what is taken out stays small.
   std::function<void(pluck_scene&, const pluck_layout&, const Eigen::VectorXd& v, std::size_t take, double value)> retune{};
+  /// Nuisances that have to go along when the effect enters the model.
+  std::function<void(const pluck_layout&, Eigen::VectorXd& v)> rebase{};
   double horizon_periods = 1e9;  ///< the model of the effect holds for so long
 
   [[nodiscard]] std::string id() const {

@@ -98,10 +98,16 @@ inline pluck_effect massive_end_effect(const string_facts& f, int end) {
           [Z, end](pluck_scene& s, const double* v, int) { s.ends[static_cast<std::size_t>(end)].per_free_mass_per_s += v[0] * Z; }};
 }
 
-/// Both channels pass a first-order high-pass; item 6.
+/// Both channels pass a first-order high-pass; item 6. What the held string gave was taken for part of the offset.
 inline pluck_effect ac_coupling_effect(const string_facts&) {
-  return {"ac-coupling", -1, false, {{"cutoff_Hz", 0.005, 200, 1e-5, true}}, {{0.1}, {0.5}, {2}, {8}, {25}, {70}}, -1,
-          [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
+  pluck_effect e{"ac-coupling", -1, false, {{"cutoff_Hz", 0.005, 200, 1e-5, true}}, {{0.1}, {0.5}, {2}, {8}, {25}, {70}}, -1,
+                 [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
+  e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
+    for (std::size_t t = 0; t < layout.takes(); ++t)
+      for (std::size_t c = 0; c < 2; ++c)
+        v[layout.at(t, pluck_layout::offset_near + static_cast<int>(c))] += std::exp(v[layout.at(t, pluck_layout::strength)]) * pluck_layout::gain(v, c) * static_forces(v[layout.position(t)])[c];
+  };
+  return e;
 }
 
 /// The transducer's own resonance; item 5.

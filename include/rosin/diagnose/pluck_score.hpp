@@ -40,6 +40,7 @@ public:
       const Eigen::Index p = value_.size() + static_cast<Eigen::Index>(i);
       v[p] = to_fitted(with.added(p), start[i]);
     }
+    if (const auto& rebase = with.effects().back().rebase) rebase(with, v);
     double dr = 0, dd = 0;
     Eigen::VectorXd dJ = Eigen::VectorXd::Zero(value_.size());
     for (std::size_t t = 0; t < views_.size(); ++t) {
@@ -148,6 +149,7 @@ private:
         const std::size_t j = (from + k) % w.lines.size();
         if (met[j]) continue;
         const double dist = std::abs(w.lines[j].pole - line.pole);
+        if (line.pole.imag() == 0 && dist > 0) continue;  // what is slow may die away within the record: exactly, then, as a line of its own
         const bool same_channel = (line.residue[0] != 0.0) == (w.lines[j].residue[0] != 0.0) || dist > 0 || line.pole.imag() != 0;
         if (dist < apart && same_channel) apart = dist, best = j;
         if (dist < 1e-3 * near && same_channel) break;

@@ -19,10 +19,11 @@ struct found_start {
   Eigen::VectorXd value;
 };
 
-inline Eigen::VectorXd extended(const Eigen::VectorXd& value, const pluck_effect& e, const std::vector<double>& start) {
+inline Eigen::VectorXd extended(const pluck_layout& layout, const Eigen::VectorXd& value, const pluck_effect& e, const std::vector<double>& start) {
   Eigen::VectorXd v(value.size() + static_cast<Eigen::Index>(start.size()));
   v.head(value.size()) = value;
   for (std::size_t i = 0; i < start.size(); ++i) v[value.size() + static_cast<Eigen::Index>(i)] = to_fitted(e.parameters[i], start[i]);
+  if (e.rebase) e.rebase(layout, v);
   return v;
 }
 
@@ -45,7 +46,7 @@ inline void add_support_starts(const scene_data& data, const std::vector<pluck_e
     const std::array<double, 3> unit{1000, 10, 1};
     e.apply(probe, unit.data(), 0);
     const double per_mass = probe.ends[static_cast<std::size_t>(e.place)].modes.front().per_mass_per_s;
-    out.push_back({e.id(), extended(fitted->plucks.value, e, {mode.frequency_Hz, mode.q, mode.per_mass_per_s / per_mass})});
+    out.push_back({e.id(), extended(data.layout, fitted->plucks.value, e, {mode.frequency_Hz, mode.q, mode.per_mass_per_s / per_mass})});
   }
 }
 
@@ -81,7 +82,7 @@ inline void add_load_starts(const scene_data& data, const std::vector<pluck_effe
       const std::vector<double> here{i / 48.0, share * string_mass, 0};
       if (const double gain = gain_as_it_stands(test(with, here)); gain > most) most = gain, best = here;
     }
-    if (most > 0) out.push_back({load->id(), extended(*value, *load, best)});
+    if (most > 0) out.push_back({load->id(), extended(data.layout, *value, *load, best)});
   }
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/diagnose/pluck_effects.hpp>
 #include <rosin/diagnose/scene_lines.hpp>
+#include <rosin/diagnose/scene_plucks.hpp>
+
+#include "plucked.hpp"
 
 #include <doctest/doctest.h>
 
@@ -45,4 +48,25 @@ TEST_CASE("every effect of the catalogue has a name of its own, starts inside it
     CHECK(change > 1e-9);
   }
   CHECK(ids.size() >= 18);
+}
+
+TEST_CASE("a high-pass that is hardly one changes nothing, once what the held string gave has left the offset") {
+  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const auto layout = test::two_plucks({});
+  const rosin::pluck_effect coupling = rosin::ac_coupling_effect(facts);
+  const Eigen::VectorXd plain = test::values_of(layout);
+  Eigen::VectorXd coupled = test::values_of(layout, {std::log(1e-4)});
+  coupling.rebase(layout, coupled);
+  const rosin::scene_plucks without(layout, {0, 0}, {}), with(layout, {0, 0}, {coupling});
+  for (const std::size_t part : {0U, 1U})
+    for (const double later : {0.0, 0.02})
+      for (std::size_t c = 0; c < 2; ++c) {
+        const double begin = part == 0 ? 0.0 : 0.006;
+        const auto level = [&](const rosin::scene_plucks& model, const Eigen::VectorXd& v) {
+          double sum = 0;
+          for (const auto& line : model.lines(v, 1, part, begin, {50e3, 53e3}, 60)) sum += (line.residue[c] * std::exp(line.pole * later)).real();
+          return sum;
+        };
+        CHECK(level(with, coupled) == doctest::Approx(level(without, plain)).epsilon(1e-3).scale(1));
+      }
 }
