@@ -155,7 +155,7 @@ void take_over(const rosin::pickup_diagnosis& p, const rosin::rig_values& values
   if (!p.mismatched) return;
   d.after = p.after;
   d.take = worst.take, d.channel = worst.channel, d.time_s = p.time_s, d.band_Hz = p.band_Hz;
-  d.residual_over_noise = rosin::rms_of(worst.before) / std::max(worst.noise, 1e-300);
+  d.residual_over_noise = rosin::rms_level(worst.before) / std::max(worst.noise, 1e-300);
   for (const auto& m : d.missing)
     if (m.position && !d.position) d.position = m.position;
 }

@@ -87,7 +87,7 @@ private:
     std::vector<law_effect> catalogue = law_effects(d_.table.lines.front().frequency_Hz / d_.table.lines.front().number, d_.table.lines.back().number);
     std::vector<law_parameter> parameters = ideal_string(ask_.fundamental_Hz);
     pickup_law start{ask_.fundamental_Hz, 0, 1e-3};
-    law_fit declared = fit_law(d_.table, parameters, start);
+    fitted_law declared = fit_law(d_.table, parameters, start);
     for (const auto& e : catalogue)
       if (contains(ask_.declared, e.name)) declared = with_effect(d_.table, declared, e);
     std::erase_if(catalogue, [&](const auto& e) { return !asked(e.name); });
@@ -173,14 +173,14 @@ private:
       const auto stretch = stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + ask_.longest_s));
       const glide_found* glide = d_.structure.glides ? &held_glide_[i] : nullptr;
       const double offset = std::expm1(offset_between(held_tables_[i].lines, reference));
-      judged_ringing j{s.take, s.channel, s.rate_Hz, r.start_s, 0, rms_of(stretch.x), {}, {}, 0};
+      judged_ringing j{s.take, s.channel, s.rate_Hz, r.start_s, 0, rms_level(stretch.x), {}, {}, 0};
       const auto plain = by_law(d_.law.declared.law, offset);
       j.before = left_by_lines(stretch, pairs_known ? doubled(plain) : plain, glide_known ? glide : nullptr);
       j.after = left_by_lines(stretch, with_strays(doubled(by_law(d_.law.best.law, offset))), glide);
-      j.own_poles = rms_of(left_by_lines(stretch, with_strays(by_table(offset)), glide));
-      j.noise = std::min(quietest_piece(left_by_lines(stretch, with_strays(doubled(own_lines(i))), glide), s.rate_Hz), rms_of(j.after));
+      j.own_poles = rms_level(left_by_lines(stretch, with_strays(by_table(offset)), glide));
+      j.noise = std::min(quietest_piece(left_by_lines(stretch, with_strays(doubled(own_lines(i))), glide), s.rate_Hz), rms_level(j.after));
       const double square = 1 / (j.recorded * j.recorded * static_cast<double>(held_ringings_.size()));
-      before += square * std::pow(rms_of(j.before), 2), after += square * std::pow(rms_of(j.after), 2);
+      before += square * std::pow(rms_level(j.before), 2), after += square * std::pow(rms_level(j.after), 2);
       floor += square * j.noise * j.noise, poles += square * j.own_poles * j.own_poles;
       d_.judged.push_back(std::move(j));
     }
@@ -199,7 +199,7 @@ private:
     d_.explained = !d_.mismatched || (!d_.missing.empty() && excess < std::max(0.5 * d_.floor, 0.12 * was));
     double most = 0;
     for (std::size_t i = 0; i < d_.judged.size(); ++i)
-      if (const double x = rms_of(d_.judged[i].before) / std::max(d_.judged[i].noise, 1e-300); x > most) most = x, d_.worst = i;
+      if (const double x = rms_level(d_.judged[i].before) / std::max(d_.judged[i].noise, 1e-300); x > most) most = x, d_.worst = i;
     if (!d_.judged.empty()) locate(d_.judged[d_.worst]);
   }
   void locate(const judged_ringing& j) {
@@ -208,7 +208,7 @@ private:
     std::span<const double> x{j.before};
     std::size_t at = 0;
     for (std::size_t k = 0; k + block <= x.size(); k += block / 2)
-      if (const double p = rms_of(x.subspan(k, block)); p > most) most = p, at = k;
+      if (const double p = rms_level(x.subspan(k, block)); p > most) most = p, at = k;
     d_.time_s = {j.start_s + static_cast<double>(at) / j.rate_Hz, j.start_s + static_cast<double>(at + block) / j.rate_Hz};
     const double f0 = d_.law.declared.law.fundamental_Hz;
     const baseband_bank bank{x, j.rate_Hz, std::min(64.0, 0.45 * f0)};

@@ -75,7 +75,7 @@ inline std::vector<pickup_law> support_places(double low_Hz, double high_Hz) {
 }
 
 /// The law with one effect more, from the three likeliest places on.
-[[nodiscard]] inline law_fit with_effect(const line_table& table, const law_fit& base, const law_effect& e) {
+[[nodiscard]] inline fitted_law with_effect(const line_table& table, const fitted_law& base, const law_effect& e) {
   std::vector<std::pair<double, pickup_law>> starts;
   const detail::law_problem problem(table, base.parameters, base.in_proportion);
   const Eigen::VectorXd plain = problem.predicted(base.law);
@@ -91,13 +91,13 @@ inline std::vector<pickup_law> support_places(double low_Hz, double high_Hz) {
   std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<law_parameter> parameters = base.parameters;
   parameters.insert(parameters.end(), e.parameters.begin(), e.parameters.end());
-  law_fit best = base;
+  fitted_law best = base;
   best.log_likelihood = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < std::min<std::size_t>(3, starts.size()); ++i)
     for (const double share : {1.0, 0.3}) {
       pickup_law at = starts[i].second;
       at.*e.strength = std::min(at.*e.strength * share, e.parameters.back().high);
-      if (law_fit f = detail::law_problem(table, parameters, base.in_proportion).fit(at); f.log_likelihood > best.log_likelihood) best = f;
+      if (fitted_law f = detail::law_problem(table, parameters, base.in_proportion).fit(at); f.log_likelihood > best.log_likelihood) best = f;
     }
   if (std::isfinite(best.log_likelihood)) return fit_law(table, parameters, best.law);
   best.parameters = parameters, best.log_likelihood = base.log_likelihood;  // nothing of it anywhere
@@ -107,7 +107,7 @@ inline std::vector<pickup_law> support_places(double low_Hz, double high_Hz) {
 }
 
 /// ln L less what so many free numbers gain by chance; small tables pay more.
-[[nodiscard]] inline double evidence_of(const law_fit& f, std::size_t lines) {
+[[nodiscard]] inline double evidence_of(const fitted_law& f, std::size_t lines) {
   const double n = 2 * static_cast<double>(lines), p = static_cast<double>(f.parameters.size());
   return f.log_likelihood - 0.5 * p * std::log(n) * n / std::max(n - p - 2, 1.0);
 }

@@ -27,7 +27,7 @@ struct found_in_law {
 };
 
 struct law_search {
-  law_fit declared, best;
+  fitted_law declared, best;
   std::vector<found_in_law> found;
   std::vector<std::pair<std::string, double>> alone;  ///< each effect by itself: evidence against the declared law
   double gain = 0;                                    ///< of all found together
@@ -36,31 +36,31 @@ struct law_search {
 namespace detail {
 
 /// Evidence, with the declared pitch as a measurement that may be wrong altogether.
-inline double worth_of(const law_fit& f, std::size_t lines, const greedy_limits& limits) {
+inline double worth_of(const fitted_law& f, std::size_t lines, const greedy_limits& limits) {
   const double off = limits.pitch_Hz > 0 ? std::pow((f.law.fundamental_Hz / limits.pitch_Hz - 1) / limits.pitch_sd, 2) : 0.0;
   return evidence_of(f, lines) - 0.5 * off / (1 + off / 100);
 }
 
 struct tried_effect {
   const law_effect* effect;
-  law_fit fit;
+  fitted_law fit;
   double evidence;
 };
 
-inline std::vector<tried_effect> try_each(const line_table& table, const law_fit& base, const std::vector<law_effect>& catalogue, const greedy_limits& limits) {
+inline std::vector<tried_effect> try_each(const line_table& table, const fitted_law& base, const std::vector<law_effect>& catalogue, const greedy_limits& limits) {
   std::vector<tried_effect> out;
   for (const auto& e : catalogue) {
     const bool there = std::any_of(base.parameters.begin(), base.parameters.end(), [&](const auto& p) { return p.member == e.strength; });
     if (there || 2 * table.lines.size() < base.parameters.size() + e.parameters.size() + 4) continue;
-    law_fit f = with_effect(table, base, e);
+    fitted_law f = with_effect(table, base, e);
     out.push_back({&e, f, worth_of(f, table.lines.size(), limits)});
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
   return out;
 }
 
-inline law_fit without_effect(const line_table& table, const law_fit& fit, const law_effect& e) {
-  law_fit less = fit;
+inline fitted_law without_effect(const line_table& table, const fitted_law& fit, const law_effect& e) {
+  fitted_law less = fit;
   std::erase_if(less.parameters, [&](const auto& p) { return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const auto& q) { return q.member == p.member; }); });
   pickup_law start = fit.law;
   start.*e.strength = 0;
@@ -70,7 +70,7 @@ inline law_fit without_effect(const line_table& table, const law_fit& fit, const
 /// Each effect found is taken out and sought anew: it stays, makes room for a better one, or goes.
 inline void exchange(const line_table& table, const std::vector<law_effect>& catalogue, const greedy_limits& limits, law_search& s) {
   for (std::size_t i = 0; i < s.found.size() && s.found.size() > 1;) {
-    const law_fit less = without_effect(table, s.best, s.found[i].effect);
+    const fitted_law less = without_effect(table, s.best, s.found[i].effect);
     const double now = worth_of(s.best, table.lines.size(), limits), before = worth_of(less, table.lines.size(), limits);
     if (now - before < limits.worth) {
       s.best = less;
@@ -87,7 +87,7 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
 }  // namespace detail
 
 /// `held`: partials that are predicted only; null where there are none.
-[[nodiscard]] inline law_search search_law(const line_table& table, const law_fit& declared, const std::vector<law_effect>& catalogue, const line_table* held,
+[[nodiscard]] inline law_search search_law(const line_table& table, const fitted_law& declared, const std::vector<law_effect>& catalogue, const line_table* held,
                                            const greedy_limits& limits = {}) {
   law_search s{declared, declared, {}, {}, 0};
   const double nothing = detail::worth_of(declared, table.lines.size(), limits);

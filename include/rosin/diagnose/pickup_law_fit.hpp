@@ -26,7 +26,7 @@ struct law_parameter {
   bool logarithmic = false;
 };
 
-struct law_fit {
+struct fitted_law {
   pickup_law law;
   std::vector<law_parameter> parameters;
   Eigen::VectorXd sd;            ///< of the parameters themselves
@@ -49,8 +49,8 @@ public:
   law_problem(const line_table& table, const std::vector<law_parameter>& parameters, bool in_proportion)
       : table_{table}, parameters_{parameters}, proportion_{in_proportion}, rows_{static_cast<Eigen::Index>(table.lines.size())} {}
 
-  [[nodiscard]] law_fit fit(pickup_law start) const {
-    law_fit best;
+  [[nodiscard]] fitted_law fit(pickup_law start) const {
+    fitted_law best;
     best.law = start, best.parameters = parameters_, best.in_proportion = proportion_;
     auto state = look(start);
     double damping = 1e-2;
@@ -74,7 +74,7 @@ public:
   }
 
   /// By how much the weighted squares would fall, half of it, if this derivative of (f, a) joined the parameters at this law; and its best size.
-  [[nodiscard]] std::pair<double, double> score(const law_fit& at, const Eigen::VectorXd& column) const {
+  [[nodiscard]] std::pair<double, double> score(const fitted_law& at, const Eigen::VectorXd& column) const {
     const auto state = look(at.law);
     const Eigen::VectorXd root = state.weight.cwiseSqrt();
     const Eigen::MatrixXd j = jacobian(at.law).array().colwise() * root.array();
@@ -147,7 +147,7 @@ private:
     }
     return j;
   }
-  void finish(law_fit& f, const view& v) const {
+  void finish(fitted_law& f, const view& v) const {
     f.log_likelihood = v.log_likelihood, f.scatter_Hz = v.scatter_Hz, f.scatter_decay = v.scatter_decay;
     const Eigen::MatrixXd j = jacobian(f.law).array().colwise() * v.weight.cwiseSqrt().array();
     const Eigen::VectorXd size = j.colwise().norm().transpose().cwiseMax(1e-300);
@@ -169,15 +169,15 @@ private:
 }  // namespace detail
 
 /// From `start` on, with the scatter of the likelier shape. Precondition: at least four lines.
-[[nodiscard]] inline law_fit fit_law(const line_table& table, const std::vector<law_parameter>& parameters, const pickup_law& start) {
-  law_fit alike = detail::law_problem(table, parameters, false).fit(start);
-  law_fit scaled = detail::law_problem(table, parameters, true).fit(start);
+[[nodiscard]] inline fitted_law fit_law(const line_table& table, const std::vector<law_parameter>& parameters, const pickup_law& start) {
+  fitted_law alike = detail::law_problem(table, parameters, false).fit(start);
+  fitted_law scaled = detail::law_problem(table, parameters, true).fit(start);
   return scaled.log_likelihood > alike.log_likelihood ? scaled : alike;
 }
 
 /// ln L of other partials of the same string (another pitch is allowed) by a law that was fitted elsewhere, with the scatter that they
 /// themselves have about it.
-[[nodiscard]] inline double predicted_log_likelihood(const line_table& table, const law_fit& fit) {
+[[nodiscard]] inline double predicted_log_likelihood(const line_table& table, const fitted_law& fit) {
   const auto n = static_cast<Eigen::Index>(table.lines.size());
   std::array<robust_data, 2> data;
   for (auto& d : data) d.y.resize(n), d.variance.resize(n), d.shape.resize(n);

@@ -63,7 +63,7 @@ inline double power_of(std::span<const double> x) {
   return out;
 }
 
-[[nodiscard]] inline double rms_of(std::span<const double> x) { return std::sqrt(detail::power_of(x)); }
+[[nodiscard]] inline double rms_level(std::span<const double> x) { return std::sqrt(detail::power_of(x)); }
 
 namespace detail {
 
@@ -148,8 +148,8 @@ private:
 /// and whatever else those lines lack, does not count as noise.
 [[nodiscard]] inline double quietest_piece(std::span<const double> left, double rate_Hz) {
   const auto block = std::max<std::size_t>(256, static_cast<std::size_t>(0.05 * rate_Hz));
-  double least = rms_of(left);
-  for (std::size_t j = 0; j + block <= left.size(); j += block) least = std::min(least, rms_of(left.subspan(j, block)));
+  double least = rms_level(left);
+  for (std::size_t j = 0; j + block <= left.size(); j += block) least = std::min(least, rms_level(left.subspan(j, block)));
   return least;
 }
 

@@ -11,11 +11,11 @@ namespace {
 
 void check_found(const char* name, const pickup_law& truth, double pickup_law::*what, double tolerance) {
   const auto table = rosin_test::table_from(truth, 16, 0, 0, 3);
-  const law_fit base = fit_law(table, ideal_string(200), {.fundamental_Hz = 200, .inverse_q = 1e-3});
+  const fitted_law base = fit_law(table, ideal_string(200), {.fundamental_Hz = 200, .inverse_q = 1e-3});
   double best = -1e300;
   std::string likeliest;
   for (const auto& e : law_effects(200, 16)) {
-    const law_fit f = with_effect(table, base, e);
+    const fitted_law f = with_effect(table, base, e);
     if (evidence_of(f, 16) > best) best = evidence_of(f, 16), likeliest = e.name;
     if (e.name == name) CHECK(f.law.*what == doctest::Approx(truth.*what).epsilon(tolerance));
   }

@@ -10,7 +10,7 @@ using namespace rosin;
 namespace {
 
 std::vector<std::string> names_in(const line_table& t) {
-  const law_fit base = fit_law(t, ideal_string(200), {.fundamental_Hz = 200, .inverse_q = 1e-3});
+  const fitted_law base = fit_law(t, ideal_string(200), {.fundamental_Hz = 200, .inverse_q = 1e-3});
   std::vector<std::string> out;
   for (const auto& f : search_law(t, base, law_effects(200, t.lines.back().number), nullptr).found) out.push_back(f.effect.name);
   std::sort(out.begin(), out.end());

@@ -17,7 +17,7 @@ TEST_CASE("fit_law: intervals of pitch, loss and stiffness cover the truth, with
     int inside = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
       const auto table = rosin_test::table_from(truth, 24, scatter, scatter, seed);
-      const law_fit f = fit_law(table, stiff, {.fundamental_Hz = 201, .inverse_q = 2e-3});
+      const fitted_law f = fit_law(table, stiff, {.fundamental_Hz = 201, .inverse_q = 2e-3});
       inside += std::abs(f.law.fundamental_Hz - 200) < 2 * f.sd_of("fundamental_Hz");
       inside += std::abs(f.law.inharmonicity - 1e-4) < 2 * f.sd_of("inharmonicity");
       inside += std::abs(f.law.inverse_q - 1e-3) < 2 * f.sd_of("inverse_quality");

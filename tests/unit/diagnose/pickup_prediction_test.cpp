@@ -18,10 +18,10 @@ TEST_CASE("left_by_lines: true poles leave the noise, wrong ones more") {
     stretch.x.push_back(std::real(std::complex{1.0, -0.4} * std::exp(s * t) * std::polar(1.0, s.imag() * 1e-3 * shape.path_s(1, t))) + 0.01 * normal());
   }
   const auto left = left_by_lines(stretch, {{1, s}}, &glide);
-  CHECK(rms_of(left) == doctest::Approx(0.01).epsilon(0.05));
+  CHECK(rms_level(left) == doctest::Approx(0.01).epsilon(0.05));
   CHECK(quietest_piece(left, 8000) == doctest::Approx(0.01).epsilon(0.2));
-  CHECK(rms_of(left_by_lines(stretch, {{1, s}})) > 0.03);
-  CHECK(rms_of(left_by_lines(stretch, {{1, wrong}}, &glide)) > 0.03);
+  CHECK(rms_level(left_by_lines(stretch, {{1, s}})) > 0.03);
+  CHECK(rms_level(left_by_lines(stretch, {{1, wrong}}, &glide)) > 0.03);
 }
 
 TEST_CASE("halves_of: one recording in two that do not overlap") {
