@@ -83,10 +83,11 @@ public:
       fir kernel{0, {1.0}};
       if (filtered) kernel = shortest_fir([](double) { return 1.0; }, limits_, rate, -400, 400, 1e-5);
       else limits_ = {0.5 * rate, 0.5 * rate};
-      const int guard = std::max(kernel.last(), static_cast<int>(2.5 / (options.stop_fraction - options.pass_fraction)));
+      const int reach = std::max(kernel.last(), -kernel.first);
+      const int guard = std::max(reach, static_cast<int>(2.5 / (options.stop_fraction - options.pass_fraction)));
       const double release = model.release_s(value, i) * rate;
       const auto length = static_cast<int>(takes[i].force_N[0].size());
-      const int edge = kernel.last(), end = static_cast<int>(std::min<double>(length - edge, release + periods * rate / model.string(value).fundamental_Hz));
+      const int edge = reach, end = static_cast<int>(std::min<double>(length - edge, release + periods * rate / model.string(value).fundamental_Hz));
       const int before = static_cast<int>(std::floor(release)) - guard, after = static_cast<int>(std::ceil(release)) + guard;
       takes_.push_back({rate, {cut(takes[i], kernel, edge, before), cut(takes[i], kernel, std::max(after, edge), end)}});
     }
