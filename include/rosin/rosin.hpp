@@ -130,6 +130,7 @@
 #include <rosin/simulate/burdened_string.hpp>
 #include <rosin/simulate/burdened_take.hpp>
 #include <rosin/simulate/converter.hpp>
+#include <rosin/simulate/energy_account.hpp>
 #include <rosin/simulate/mode_step.hpp>
 #include <rosin/simulate/modal_bank.hpp>
 #include <rosin/simulate/modal_contact.hpp>
@@ -144,6 +145,7 @@
 #include <rosin/simulate/profiled_rod.hpp>
 #include <rosin/simulate/random_rig.hpp>
 #include <rosin/simulate/regime.hpp>
+#include <rosin/simulate/stroke_energy.hpp>
 #include <rosin/simulate/wave_design.hpp>
 #include <rosin/simulate/wave_echo.hpp>
 #include <rosin/simulate/wave_end.hpp>

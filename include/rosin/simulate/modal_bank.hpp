@@ -11,6 +11,7 @@
 // next one and all that must be known before the new force is: velocities at the ports and forces on the ends. The
 // driving-point mobility of this scheme is the sampled, triangle-weighted one of the modes, hence positive real: no step
 // can create energy. Several ports (contact, point masses, dampers) make the one bank serve several point forces.
+// Ports may move from step to step (move_to): a mode's force f sin(k x) then runs straight between its values at the steps.
 //
 #pragma once
 
@@ -72,6 +73,14 @@ public:
   /// State at the end of the step under way if no force acts there.
   [[nodiscard]] const bank_reading<Ports>& free() const noexcept { return free_; }
 
+  /// The ports from now on, for the step under way as well: after advance() and before anything is read. Precondition: the modes are
+  /// numbered from 1 without gaps.
+  void move_to(const values& positions) noexcept {
+    mobility_ = {}, near_gain_ = {}, far_gain_ = {}, compliance_ = {}, near_share_ = {}, far_share_ = {}, free_.velocity = {};
+    move_lanes(0, odd_, 1, 1, positions);
+    move_lanes(odd_, lanes_.size(), 2, -1, positions);
+  }
+
   /// Ends the step with these forces and begins the next.
   void advance(const values& force) noexcept {
     accumulator odd, even;
@@ -94,10 +103,18 @@ private:
     pack end_re = pack::Zero(), end_im = pack::Zero();    // state to force on the near end
     std::array<pack, ports> shape{};
   };
+  struct answers {  // of a lane's modes to a force at the end of the same step, and to one that stays, for a shape of 1
+    pack velocity = pack::Zero(), end = pack::Zero(), deflection = pack::Zero(), end_at_rest = pack::Zero();
+  };
   struct placed_mode {
     string_mode mode;
     std::size_t lane;
     Eigen::Index index;
+  };
+  struct values_of_lanes {
+    std::array<pack, ports> mobility{};
+    pack end = pack::Zero(), compliance = pack::Zero(), share = pack::Zero(), velocity = pack::Zero();
+    values_of_lanes() noexcept { mobility.fill(pack::Zero()); }
   };
   struct accumulator {
     std::array<pack, ports> velocity{};
@@ -126,6 +143,7 @@ private:
       if (n % width == 0) {
         lanes_.emplace_back();
         lanes_.back().shape.fill(pack::Zero());
+        answers_.emplace_back();
       }
       placed_.push_back({*modes[n], lanes_.size() - 1, static_cast<Eigen::Index>(n % width)});
       set(lanes_.back(), placed_.back().index, *modes[n], damping, positions, h);
@@ -143,23 +161,58 @@ private:
     l.push_re[i] = push.real(), l.push_im[i] = push.imag();
     l.end_re[i] = end.real(), l.end_im[i] = end.imag();
     for (std::size_t k = 0; k < ports; ++k) l.shape[k][i] = m.shape(positions[k]);
-    add_gains(l, i, m, r.end, end);
-  }
-
-  void add_gains(const lane& l, Eigen::Index i, const string_mode& m, std::complex<double> at_once, std::complex<double> end) {
-    const double end_at_once = end.real() * at_once.real() + end.imag() * at_once.imag();
-    const double yields = 1 / (m.mass_kg * m.omega_rad_s * m.omega_rad_s);
+    auto& once = answers_.back();
+    once.velocity[i] = r.end.real();
+    once.end[i] = end.real() * r.end.real() + end.imag() * r.end.imag();
+    once.deflection[i] = 1 / (m.mass_kg * w2);
+    once.end_at_rest[i] = m.end_stiffness_N_m / (m.mass_kg * w2);
     for (std::size_t j = 0; j < ports; ++j) {
-      for (std::size_t k = 0; k < ports; ++k) mobility_[j][k] += l.shape[j][i] * l.shape[k][i] * at_once.real();
-      near_gain_[j] += l.shape[j][i] * end_at_once;
-      far_gain_[j] += l.shape[j][i] * end_at_once * m.parity();
-      compliance_[j] += l.shape[j][i] * l.shape[j][i] * yields;
-      near_share_[j] += l.shape[j][i] * m.end_stiffness_N_m * yields;
-      far_share_[j] += l.shape[j][i] * m.end_stiffness_N_m * yields * m.parity();
+      const double s = l.shape[j][i];
+      for (std::size_t k = 0; k < ports; ++k) mobility_[j][k] += s * l.shape[k][i] * once.velocity[i];
+      near_gain_[j] += s * once.end[i], far_gain_[j] += s * once.end[i] * m.parity();
+      compliance_[j] += s * s * once.deflection[i];
+      near_share_[j] += s * once.end_at_rest[i], far_share_[j] += s * once.end_at_rest[i] * m.parity();
     }
   }
 
+  /// sin(n pi x) for every second n from `number` on, by turning eight at a time; and all sums over modes anew.
+  void move_lanes(std::size_t first, std::size_t last, int number, double parity, const values& positions) noexcept {
+    constexpr double pi = 3.14159265358979323846;
+    for (std::size_t j = 0; j < ports && first < last; ++j) {
+      pack sine, cosine;
+      for (int n = 0; n < width; ++n) {
+        const double angle = pi * std::fmod((number + 2 * n) * positions[j], 2.0);
+        sine[n] = std::sin(angle), cosine[n] = std::cos(angle);
+      }
+      const double angle = pi * std::fmod(2 * width * positions[j], 2.0), turn_sine = std::sin(angle), turn_cosine = std::cos(angle);
+      for (std::size_t i = first; i < last; ++i) {
+        lanes_[i].shape[j] = sine;
+        const pack turned = sine * turn_cosine + cosine * turn_sine;
+        cosine = cosine * turn_cosine - sine * turn_sine;
+        sine = turned;
+      }
+    }
+    for (std::size_t j = 0; j < ports; ++j) sum_again(first, last, parity, j);
+  }
+
+  void sum_again(std::size_t first, std::size_t last, double parity, std::size_t j) noexcept {
+    values_of_lanes sum;
+    for (std::size_t i = first; i < last; ++i) {
+      const lane& l = lanes_[i];
+      const answers& once = answers_[i];
+      const pack& s = l.shape[j];
+      for (std::size_t k = 0; k < ports; ++k) sum.mobility[k] += s * l.shape[k] * once.velocity;
+      sum.end += s * once.end, sum.compliance += s * s * once.deflection, sum.share += s * once.end_at_rest, sum.velocity += s * l.re;
+    }
+    for (std::size_t k = 0; k < ports; ++k) mobility_[j][k] += total(sum.mobility[k]);
+    near_gain_[j] += total(sum.end), far_gain_[j] += parity * total(sum.end);
+    compliance_[j] += total(sum.compliance);
+    near_share_[j] += total(sum.share), far_share_[j] += parity * total(sum.share);
+    free_.velocity[j] += total(sum.velocity);
+  }
+
   std::vector<lane> lanes_;
+  std::vector<answers> answers_;
   std::vector<placed_mode> placed_;
   std::size_t odd_ = 0;
   bank_reading<Ports> free_{};

@@ -31,23 +31,26 @@ struct modes_left_out {
 class modal_contact {
 public:
   modal_contact(const modal_rig& rig, double position, double mode_limit_Hz, double step_s)
-      : step_{step_s},
+      : rig_{rig},
+        step_{step_s},
         transverse_{transverse_modes(rig.string, mode_limit_Hz), rig.damping, {position}, step_s},
         torsion_{torsional_modes(rig, mode_limit_Hz), damping_convention::viscous, {position}, step_s} {
-    left_out_.near = 1 - position - transverse_.near_share(0);
-    left_out_.far = position - transverse_.far_share(0);
-    left_out_.centre_m_N = static_compliance_m_N(rig.string, position) - transverse_.compliance(0);
-    if (rig.torsion.present()) {
-      const double stiffness =  // of the surface against both ends together, N/m
-          rig.torsion.impedance_ratio * rig.torsion.speed_ratio * rig.string.tension_N / rig.string.length_m;
-      left_out_.torsion_m_N = position * (1 - position) / stiffness - torsion_.compliance(0);
-    }
-    rest_ = (left_out_.centre_m_N + left_out_.torsion_m_N) / step_;
-    mobility_ = transverse_.mobility(0, 0) + torsion_.mobility(0, 0) + rest_;
+    set_place(position);
+    rest_before_ = rest_;
+  }
+
+  /// Where the contact is from the end of the last step on: to be said before the line is drawn. The modes left out follow the
+  /// force f with the deflection C f, and the surface moves with their sum sin (sin f)' / stiffness = C f' + C' f / 2.
+  void move_to(double position) noexcept {
+    rest_before_ = rest_;
+    transverse_.move_to({position});
+    torsion_.move_to({position});
+    set_place(position);
+    rest_before_ = (rest_before_ + rest_) / 2;
   }
 
   [[nodiscard]] load_line<double> line(const rod_state& rod) const noexcept {
-    return {transverse_.free().velocity[0] + torsion_.free().velocity[0] - rest_ * force_, mobility_, rod.velocity_m_s,
+    return {transverse_.free().velocity[0] + torsion_.free().velocity[0] - rest_before_ * force_, mobility_, rod.velocity_m_s,
             rod.normal_force_N, step_};
   }
 
@@ -59,7 +62,7 @@ public:
                                     torsion_.free().velocity[0] + torsion_.mobility(0, 0) * force_N};
     transverse_.advance({force_N});
     torsion_.advance({force_N});
-    force_ = force_N;
+    force_ = force_N, rest_before_ = rest_;
     return state;
   }
 
@@ -67,10 +70,24 @@ public:
   [[nodiscard]] double mobility_m_Ns() const noexcept { return mobility_; }
 
 private:
+  void set_place(double position) noexcept {
+    left_out_.near = 1 - position - transverse_.near_share(0);
+    left_out_.far = position - transverse_.far_share(0);
+    left_out_.centre_m_N = static_compliance_m_N(rig_.string, position) - transverse_.compliance(0);
+    if (rig_.torsion.present()) {
+      const double stiffness =  // of the surface against both ends together, N/m
+          rig_.torsion.impedance_ratio * rig_.torsion.speed_ratio * rig_.string.tension_N / rig_.string.length_m;
+      left_out_.torsion_m_N = position * (1 - position) / stiffness - torsion_.compliance(0);
+    }
+    rest_ = (left_out_.centre_m_N + left_out_.torsion_m_N) / step_;
+    mobility_ = transverse_.mobility(0, 0) + torsion_.mobility(0, 0) + rest_;
+  }
+
+  modal_rig rig_;
   double step_;
   modal_bank<1> transverse_, torsion_;
   modes_left_out left_out_{};
-  double rest_ = 0, mobility_ = 0, force_ = 0;
+  double rest_ = 0, rest_before_ = 0, mobility_ = 0, force_ = 0;  // rest_: compliance / step, m/s per N
 };
 
 }  // namespace rosin

@@ -7,11 +7,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <rosin/simulate/modal_low_pass.hpp>
 #include <rosin/simulate/modal_string.hpp>
+#include <rosin/simulate/stroke_energy.hpp>
 
 namespace rosin {
 
@@ -42,6 +44,7 @@ struct modal_take {
   std::size_t unconverged = 0;                 ///< steps whose contact equation was not solved to tolerance
   std::size_t slips = 0;                       ///< times the contact went from sticking to slipping
   double slipping = 0;                         ///< share of the steps of the second half that slipped, 0 to 1
+  std::optional<stroke_energy> energy{};       ///< of strokes, where it was asked for
 
   [[nodiscard]] std::size_t size() const noexcept { return force_near_N.size(); }
 };

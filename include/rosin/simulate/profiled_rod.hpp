@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A rod whose speed and normal force follow break points: straight between them, constant before the first and after the
-// last. Whichever has no points is that of a steady stroke. Times count from the first sample of the take.
+// A rod whose speed, normal force and place on the string follow break points: straight between them, constant before the first
+// and after the last. Whichever has no points is that of a steady stroke. Times count from the first sample of the take.
 //
 #pragma once
 
@@ -19,12 +19,17 @@ struct profiled_rod {
 
   steady_rod steady{};
   break_points speed_m_s{}, normal_force_N{};
+  break_points place{};  ///< distance from the near end / length; without points the rod stays where it is
 
   [[nodiscard]] rod_state operator()(double t) const noexcept {
     const rod_state usual = steady(t);
     return {speed_m_s.empty() ? usual.velocity_m_s : value_at(speed_m_s, t),
             normal_force_N.empty() ? usual.normal_force_N : value_at(normal_force_N, t)};
   }
+
+  [[nodiscard]] bool travels() const noexcept { return !place.empty(); }
+  /// Precondition: travels().
+  [[nodiscard]] double position(double t) const noexcept { return value_at(place, t); }
 
   /// Precondition: there is at least one point.
   [[nodiscard]] static double value_at(const break_points& points, double t) noexcept {
@@ -36,6 +41,6 @@ struct profiled_rod {
   }
 };
 
-static_assert(RodMotion<profiled_rod>);
+static_assert(TravellingRod<profiled_rod>);
 
 }  // namespace rosin

@@ -132,3 +132,25 @@ TEST_CASE("under a lasting force it comes to rest with the static shares it stat
   for (const auto& m : modes) share += m.shape(0.3) * m.end_stiffness_N_m / (m.mass_kg * m.omega_rad_s * m.omega_rad_s);
   CHECK(bank.near_share(0) == doctest::Approx(share));
 }
+
+TEST_CASE("a port that has moved is one that was there from the start, for all that is read, and of the modes' state nothing is lost") {
+  const rosin::string_parameters string{
+      .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 500}};
+  const auto modes = rosin::transverse_modes(string, 200e3);
+  using bank = rosin::modal_bank<2>;
+  bank both{modes, rosin::damping_convention::viscous, {0.2, 0.617}, 1e-6}, moved{modes, rosin::damping_convention::viscous, {0.2, 0.9}, 1e-6};
+  for (int i = 0; i < 50; ++i) both.advance({std::sin(0.4 * i), 0}), moved.advance({std::sin(0.4 * i), 0});
+  moved.move_to({0.2, 0.617});
+  for (std::size_t j = 0; j < 2; ++j) {
+    CHECK(moved.free().velocity[j] == doctest::Approx(both.free().velocity[j]).epsilon(1e-10));
+    CHECK(moved.mobility(0, j) == doctest::Approx(both.mobility(0, j)).epsilon(1e-10));
+    CHECK(moved.near_gain(j) == doctest::Approx(both.near_gain(j)).epsilon(1e-10));
+    CHECK(moved.far_gain(j) == doctest::Approx(both.far_gain(j)).epsilon(1e-10));
+    CHECK(moved.compliance(j) == doctest::Approx(both.compliance(j)).epsilon(1e-10));
+    CHECK(moved.near_share(j) == doctest::Approx(both.near_share(j)).epsilon(1e-10));
+    CHECK(moved.far_share(j) == doctest::Approx(both.far_share(j)).epsilon(1e-10));
+  }
+  both.advance({0.1, -0.7}), moved.advance({0.1, -0.7});
+  CHECK(moved.free().velocity[1] == doctest::Approx(both.free().velocity[1]).epsilon(1e-10));
+  CHECK(moved.free().far == doctest::Approx(both.free().far).epsilon(1e-10));
+}

@@ -73,3 +73,36 @@ TEST_CASE("a positive force turns and moves the surface forwards") {
   CHECK(state.centre_m_s > 1);
   CHECK(state.torsion_m_s > 0.3);
 }
+
+TEST_CASE("a steady force that runs along an ideal string: the closed form of its velocity and of the forces on the ends, Doppler's") {
+  auto rig = soft_rig(1e6);
+  rig.string.bending_stiffness_Nm2 = 0;
+  rig.torsion = {};
+  const double mach = 0.3, force = 0.5, c = rig.string.wave_speed_m_s(), length = rig.string.length_m, from = 0.35;
+  rosin::modal_contact contact{rig, from, 0.49 / step, step};
+  double velocity = 0, near = 0, far = 0;
+  int counted = 0, near_counted = 0, far_counted = 0;
+  for (int n = 0; n * step < 1.1 * length * (1 - from) / c; ++n) {
+    const double x = from + mach * c * n * step / length, into = n * step * c / length;
+    contact.move_to(x);
+    const auto line = contact.line({});
+    const double now = line.slip(force);
+    const auto state = contact.apply(force);
+    if (into > 0.1 && into < 0.6) velocity += now, ++counted;
+    if (into > 1.08 * from) near += state.near_N + contact.left_out().near * force, ++near_counted;
+    if (into > 1.03 * (1 - from)) far += state.far_N + contact.left_out().far * force, ++far_counted;
+  }
+  CHECK(velocity / counted == doctest::Approx(force / (2 * rig.string.impedance_Ns_m()) / (1 - mach * mach)).epsilon(1e-3));
+  CHECK(near / near_counted == doctest::Approx(force / (1 + mach)).epsilon(5e-3));
+  CHECK(far / far_counted == doctest::Approx(force / (1 - mach)).epsilon(5e-3));
+}
+
+TEST_CASE("a contact that is told to stay where it is does what it would have done") {
+  rosin::modal_contact told{soft_rig(1000), 0.3, 200e3, step}, left_alone{soft_rig(1000), 0.3, 200e3, step};
+  for (int i = 0; i < 300; ++i) {
+    told.move_to(0.3);
+    const double force = 0.3 * std::sin(0.05 * i);
+    CHECK(told.line({}).slip(force) == doctest::Approx(left_alone.line({}).slip(force)).epsilon(1e-9));
+    told.apply(force), left_alone.apply(force);
+  }
+}

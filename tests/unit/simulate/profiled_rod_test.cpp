@@ -50,3 +50,12 @@ TEST_CASE("a stroke that ends: the rod stops and lifts off, and the string rings
   CHECK(free < 1e-6);
   CHECK(ringing > 0.05);
 }
+
+TEST_CASE("it travels where it has a way, and stays where it has none") {
+  CHECK(!rosin::profiled_rod{}.travels());
+  const rosin::profiled_rod rod{.place = {{0.1, 0.3}, {0.2, 0.1}}};
+  CHECK(rod.travels());
+  CHECK(rod.position(0) == 0.3);
+  CHECK(rod.position(0.15) == doctest::Approx(0.2));
+  CHECK(rod.position(1) == 0.1);
+}
