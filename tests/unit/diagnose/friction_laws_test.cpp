@@ -4,29 +4,24 @@
 #include <doctest/doctest.h>
 
 #include "contact_rigs.hpp"
+#include "slips_by_hand.hpp"
 
 namespace {
 
-/// Slips made by hand: speeds of many shapes, a force by one law or the other.
+/// Friction by a heat that decays, the faster the faster it slips.
+struct fading_heat {
+  double heat = 0;
+  double operator()(double v, double normal_N) {
+    const double mu = 0.4 + 0.5 * std::exp(-heat / 0.05);
+    heat = heat * std::exp(-(400 + 2500 * v) / rosin_test::slip_rate_Hz) + v * normal_N * mu * 1e3 / rosin_test::slip_rate_Hz;
+    return mu;
+  }
+};
+
 std::vector<rosin::slip_record> by_hand(bool thermal) {
   std::vector<rosin::slip_record> records;
-  for (const double strength : {1.0, 1.4}) {
-    rosin::slip_record r;
-    r.rate_Hz = 128e3, r.normal_N = 0.3 * strength;
-    double heat = 0;
-    for (std::size_t i = 0; i < 20000; ++i) {
-      const std::size_t at = i % 250, slip = i / 250;
-      const double size = 0.4 + 0.3 * std::sin(1.7 * static_cast<double>(slip)), u = static_cast<double>(at) / 100;
-      const double v = at < 100 ? strength * size * std::sin(std::numbers::pi * u) * (1 + 0.4 * std::sin(11 * u)) + 0.05 : 0;
-      const double mu = thermal ? 0.4 + 0.5 * std::exp(-heat / 0.05) : 0.4 + 0.5 * std::exp(-v / 0.15), f = r.normal_N * mu;
-      heat = heat * std::exp(-(400 + 2500 * v) / r.rate_Hz) + (v > 0 ? v * f * 1e3 / r.rate_Hz : 0);
-      r.force_N.push_back(v > 0 ? f : 0.2 * r.normal_N);
-      r.relative_m_s.push_back(-v);
-    }
-    r.phases = rosin::find_phases(r.relative_m_s, 0.2, {.least = 0.1});
-    r.slips = rosin::slips_of(r.force_N, r.relative_m_s, r.phases, 0.2, r.normal_N, 0, 2);
-    records.push_back(std::move(r));
-  }
+  for (const double strength : {1.0, 1.4})
+    records.push_back(thermal ? rosin_test::slips_by_hand(strength, 20000, 0.4, fading_heat{}) : rosin_test::slips_by_hand(strength, 20000, 0.4, rosin_test::curve_by_hand{}));
   return records;
 }
 

@@ -3,33 +3,38 @@
 
 #include <doctest/doctest.h>
 
+#include "slips_by_hand.hpp"
+
 namespace {
 
-/// Slips made by hand, the mean of the force taken away; `lost` is what it was, as a coefficient of friction.
+/// Friction by the contact's temperature, with all its memory.
+struct lasting_heat {
+  rosin::contact_heat<double> contact{{.layer_m = 3e-6, .area_per_newton_m2 = 1e-7}};
+  double operator()(double v, double normal_N) {
+    const double mu = 0.3 + 0.7 * std::exp(-contact.temperature_rise_K() / 25);
+    contact(v * normal_N * mu, v, normal_N, 1 / rosin_test::slip_rate_Hz);
+    return mu;
+  }
+};
+
+/// A little noise, and the mean of the force taken away: returned.
+double spoil(rosin::slip_record& r) {
+  double mean = 0;
+  for (std::size_t i = 0; i < r.force_N.size(); ++i) {
+    r.force_N[i] += 1e-3 * r.normal_N * std::sin(1.3 * static_cast<double>(i * i % 977));
+    mean += r.force_N[i] / static_cast<double>(r.force_N.size());
+  }
+  for (double& f : r.force_N) f -= mean;
+  rosin_test::find_slips(r);
+  return mean;
+}
+
+/// `lost` is what the means were, in newtons.
 std::vector<rosin::slip_record> without_their_mean(bool thermal, std::vector<double>& lost) {
   std::vector<rosin::slip_record> records;
   for (const double strength : {1.0, 1.4}) {
-    rosin::slip_record r;
-    r.rate_Hz = 128e3, r.normal_N = 0.3 * strength;
-    rosin::contact_heat<double> contact({.layer_m = 3e-6, .area_per_newton_m2 = 1e-7});
-    double sum = 0;
-    for (std::size_t i = 0; i < 7000; ++i) {
-      const std::size_t at = i % 250, slip = i / 250;
-      const double size = 0.5 + 0.3 * std::sin(1.7 * static_cast<double>(slip)), u = static_cast<double>(at) / 100;
-      const double v = at < 100 ? strength * size * std::sin(std::numbers::pi * u) * (1 + 0.4 * std::sin(11 * u)) + 0.05 : 0;
-      const double mu = thermal ? 0.3 + 0.7 * std::exp(-contact.temperature_rise_K() / 25) : 0.4 + 0.5 * std::exp(-v / 0.15);
-      const double f = v > 0 ? r.normal_N * mu : 0.2 * r.normal_N;
-      contact(v * f, v, r.normal_N, 1 / r.rate_Hz);
-      r.force_N.push_back(f + 1e-3 * r.normal_N * std::sin(1.3 * static_cast<double>(i * i % 977)));
-      r.relative_m_s.push_back(-v);
-      sum += r.force_N.back();
-    }
-    const double mean = sum / static_cast<double>(r.force_N.size());
-    for (double& f : r.force_N) f -= mean;
-    lost.push_back(mean);
-    r.phases = rosin::find_phases(r.relative_m_s, 0.2, {.least = 0.1});
-    r.slips = rosin::slips_of(r.force_N, r.relative_m_s, r.phases, 0.2, r.normal_N, 0, 2);
-    records.push_back(std::move(r));
+    records.push_back(thermal ? rosin_test::slips_by_hand(strength, 7000, 0.5, lasting_heat{}) : rosin_test::slips_by_hand(strength, 7000, 0.5, rosin_test::curve_by_hand{}));
+    lost.push_back(spoil(records.back()));
   }
   return records;
 }
