@@ -83,6 +83,7 @@
 #include <rosin/propagate/fir.hpp>
 #include <rosin/propagate/string_parameters.hpp>
 #include <rosin/propagate/termination.hpp>
+#include <rosin/propagate/termination_modes.hpp>
 #include <rosin/propagate/termination_table.hpp>
 #include <rosin/propagate/transmission.hpp>
 
