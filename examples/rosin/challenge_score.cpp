@@ -13,6 +13,8 @@ namespace tool {
 
 namespace {
 
+using rosin::detail::figure;
+
 bool same_effect(const std::string& hidden, const json& said) {
   if (said.at("effect") == hidden) return true;
   const auto& others = said.at("indistinguishable_from");
@@ -46,7 +48,7 @@ std::string share(std::size_t right, std::size_t all) {
   if (all == 0) return "-";
   const double k = static_cast<double>(right), n = static_cast<double>(all);
   const double low = right == 0 ? 0 : boost::math::ibeta_inv(k, n - k + 1, 0.025), high = right == all ? 1 : boost::math::ibeta_inv(k + 1, n - k, 0.975);
-  return std::to_string(right) + "/" + std::to_string(all) + " (" + rosin::detail::figure(100 * low, "%.0f") + "-" + rosin::detail::figure(100 * high, "%.0f") + " %)";
+  return std::to_string(right) + "/" + std::to_string(all) + " (" + figure(100 * low, "%.0f") + "-" + figure(100 * high, "%.0f") + " %)";
 }
 
 double median(std::vector<double> x) {
@@ -131,8 +133,8 @@ std::string to_markdown(const std::vector<rig_score>& scores, const std::string&
     if (s.held_out_over_floor > 0 && s.verdict == "explained") floors.push_back(s.held_out_over_floor);
   }
   std::string out = how + "\n\nNamed right: " + share(right, scores.size()) + ". End, channel and position right where the effect was named: " + share(placed, with_place) +
-                    ". 95 % intervals that cover: " + share(covered, intervals) + ". Held-out residual over the noise floor, median: " + rosin::detail::figure(median(floors)) +
-                    ". Seconds a rig, median: " + rosin::detail::figure(median(seconds)) + ".\n\n| hidden | named right | placed right | errors, median | intervals that cover | said instead |\n|---|---|---|---|---|---|\n";
+                    ". 95 % intervals that cover: " + share(covered, intervals) + ". Held-out residual over the noise floor, median: " + figure(median(floors)) +
+                    ". Seconds a rig, median: " + figure(median(seconds)) + ".\n\n| hidden | named right | placed right | errors, median | intervals that cover | said instead |\n|---|---|---|---|---|---|\n";
   for (const auto& [hidden, rigs] : by) {
     std::size_t ok = 0, place_ok = 0, places = 0, in = 0, of = 0;
     std::map<std::string, std::vector<double>> errors;
@@ -144,7 +146,7 @@ std::string to_markdown(const std::vector<rig_score>& scores, const std::string&
     }
     std::string wrong, off;
     for (const auto& [name, count] : instead) wrong += (wrong.empty() ? "" : ", ") + (count > 1 ? std::to_string(count) + " x " : std::string{}) + name;
-    for (const auto& [name, e] : errors) off += (off.empty() ? "" : ", ") + name + " " + (name == "position" ? rosin::detail::figure(median(e), "%.1e") : rosin::detail::figure(100 * median(e), "%.2g") + " %");
+    for (const auto& [name, e] : errors) off += (off.empty() ? "" : ", ") + name + " " + (name == "position" ? figure(median(e), "%.1e") : figure(100 * median(e), "%.2g") + " %");
     out += "| " + hidden + " | " + share(ok, rigs.size()) + " | " + share(place_ok, places) + " | " + off + " | " + share(in, of) + " | " + wrong + " |\n";
   }
   return out;

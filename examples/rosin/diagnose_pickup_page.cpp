@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
-//
-// What a single pickup told, as sentences and as figures.
-//
-#include "diagnose_rig.hpp"
+#include "diagnose_pickup_page.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 //
 // Rigs without force transducers at both ends: what plucks heard by a pickup or a microphone say of physics that was left out.
 //
-#include "diagnose_rig.hpp"
+#include "diagnose_pickup_page.hpp"
 #include "progress.hpp"
 
 #include <rosin/diagnose/pickup_diagnosis.hpp>

@@ -2,7 +2,7 @@
 //
 // The page of a diagnosis: a sentence, the picture of the mismatch, the picture after, the parameters, the runners-up, what was not done.
 //
-#include "diagnose_rig.hpp"
+#include "diagnose_pickup_page.hpp"
 #include "report_page.hpp"
 
 #include <algorithm>

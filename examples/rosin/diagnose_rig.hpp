@@ -4,7 +4,6 @@
 //
 #pragma once
 
-#include "report_figure.hpp"
 #include "rig_input.hpp"
 
 #include <rosin/propagate/band.hpp>
@@ -95,8 +94,6 @@ inline constexpr std::size_t diagnosis_steps = 4;
                                                      const std::function<void()>& step = [] {});
 /// The same for a rig that has not two force channels: plucks heard by pickups or microphones.
 [[nodiscard]] rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {});
-[[nodiscard]] std::string pickup_statement(const missing_effect& m);
-[[nodiscard]] std::vector<figure> pickup_figures(const rig_diagnosis& d);
 /// What an effect means, with its values.
 [[nodiscard]] std::string statement_of(const missing_effect& m);
 /// A parameter of the fit in the names and units of the format; the doubt in nominal values joins the standard deviation.
