@@ -123,6 +123,26 @@ inline fir shrink(const fir& whole, std::size_t count) {
           {whole.taps.begin() + static_cast<std::ptrdiff_t>(begin), whole.taps.begin() + static_cast<std::ptrdiff_t>(end)}};
 }
 
+/// Whether the response stays within `most` of ideals that lie evenly from 0 to the end of the pass band.
+[[nodiscard]] inline bool stays_near(const fir& kernel, const std::vector<std::complex<double>>& ideal, double most, const band& limits, double rate_Hz) {
+  const double last = static_cast<double>(ideal.size() - 1);
+  for (std::size_t i = 0; i < ideal.size(); ++i)
+    if (!(std::abs(kernel.response(limits.pass_Hz * static_cast<double>(i) / last, rate_Hz) - ideal[i]) <= most)) return false;
+  return true;
+}
+
+/// As short as it stays near its ideals, by bisection; `error` is relative to the largest of them.
+[[nodiscard]] inline fir shortest_part(const fir& whole, const std::vector<std::complex<double>>& ideal, const band& limits, double rate_Hz, double error) {
+  double scale = 0;
+  for (const auto& x : ideal) scale = std::max(scale, std::abs(x));
+  std::size_t too_short = 0, enough = whole.taps.size();
+  while (enough - too_short > 1) {
+    const std::size_t middle = (too_short + enough) / 2;
+    (stays_near(shrink(whole, middle), ideal, error * scale, limits, rate_Hz) ? enough : too_short) = middle;
+  }
+  return shrink(whole, enough);
+}
+
 }  // namespace detail
 
 /// The shortest runs of taps whose responses stay within `error` (relative to the largest |wanted|) of the wanted ones all over
@@ -130,18 +150,13 @@ inline fir shrink(const fir& whole, std::size_t count) {
 template <TransferSet H>
 [[nodiscard]] std::array<fir, set_size<H>> shortest_firs(const H& wanted, const band& limits, double rate_Hz, int first, int last, double error) {
   constexpr int points = 400;
-  std::array<fir, set_size<H>> out = sample_responses(wanted, limits, rate_Hz, first, last);
-  std::vector<decltype(wanted(0.0))> ideal;
-  for (int i = 0; i <= points; ++i) ideal.push_back(wanted(limits.pass_Hz * i / points));
-  for (std::size_t k = 0; k < set_size<H>; ++k) {
-    const auto known = [&](double f) { return std::complex<double>(ideal[limits.pass_Hz > 0 ? static_cast<std::size_t>(std::lround(f / limits.pass_Hz * points)) : 0][k]); };
-    std::size_t too_short = 0, enough = out[k].taps.size();
-    while (enough - too_short > 1) {
-      const std::size_t middle = (too_short + enough) / 2;
-      (pass_band_error(detail::shrink(out[k], middle), known, limits, rate_Hz, points) <= error ? enough : too_short) = middle;
-    }
-    out[k] = detail::shrink(out[k], enough);
+  std::array<std::vector<std::complex<double>>, set_size<H>> ideal;
+  for (int i = 0; i <= points; ++i) {
+    const auto values = wanted(limits.pass_Hz * i / points);
+    for (std::size_t k = 0; k < set_size<H>; ++k) ideal[k].emplace_back(values[k]);
   }
+  std::array<fir, set_size<H>> out = sample_responses(wanted, limits, rate_Hz, first, last);
+  for (std::size_t k = 0; k < set_size<H>; ++k) out[k] = detail::shortest_part(out[k], ideal[k], limits, rate_Hz, error);
   return out;
 }
 template <Transfer H>

@@ -49,3 +49,13 @@ TEST_CASE("the shortest run keeps the error asked for, and one tap less does not
     CHECK(rosin::pass_band_error(shorter, wanted, limits, rate_Hz) > error);
   }
 }
+
+TEST_CASE("a set of runs: each is as short as its own size allows") {
+  const auto set = [](double f) { return std::array<std::complex<double>, 2>{1e-3 * wanted(f), wanted(f)}; };
+  const auto two = rosin::shortest_firs(set, limits, rate_Hz, -100, 120, 1e-4);
+  const rosin::fir alone = rosin::shortest_fir(wanted, limits, rate_Hz, -100, 120, 1e-4);
+  CHECK(two[1].taps == alone.taps);
+  CHECK(two[0].first == alone.first);
+  REQUIRE(two[0].taps.size() == alone.taps.size());
+  CHECK(two[0].taps[9] == doctest::Approx(1e-3 * alone.taps[9]));
+}
