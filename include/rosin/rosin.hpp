@@ -58,6 +58,7 @@
 #include <rosin/calibrate/end_fit.hpp>
 #include <rosin/calibrate/end_problem.hpp>
 #include <rosin/calibrate/end_search.hpp>
+#include <rosin/calibrate/free_decay.hpp>
 #include <rosin/calibrate/moving_string.hpp>
 #include <rosin/calibrate/partial_baseband.hpp>
 #include <rosin/calibrate/partial_choice.hpp>
