@@ -19,17 +19,46 @@ moving_end wrapped(const End& end, rosin::known_admittance admittance) {
           std::move(admittance)};
 }
 
-rosin::outcome<moving_end> end_of_table(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
+/// "rig.toml: terminations.far: bridge.csv"
+std::string place_of(const rosin::rig& rig, std::size_t which) {
+  const auto& end = end_of(rig, which);
+  return rig.file + ": terminations." + (which == 0 ? "near" : "far") + (end && end->kind == form::table ? ": " + end->file : "");
+}
+
+rosin::outcome<rosin::table_termination> completed(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
   std::vector<rosin::measured_admittance> table;
   for (const auto& p : t.admittance) table.push_back({p.frequency_Hz, {p.re_m_sN, p.im_m_sN}});
   const auto end = rosin::complete_admittance(table, impedance_Ns_m);
   const std::string name = which == 0 ? "near" : "far";
-  if (!end) return rosin::failure{rig.file + ": terminations." + name + ": " + t.file + ": " + end.error()};
+  if (!end) return rosin::failure{place_of(rig, which) + ": " + end.error()};
   const auto percent = [](double x) { return rosin::detail::figure(100 * x, "%.2g") + " %"; };
   if (end->repaired > 0) remarks.push_back("terminations." + name + ": " + t.file + ": negative real parts (" + percent(end->repaired) + " of all) were set to 0: a termination takes energy");
   if (end->mismatch > 0.1)
     remarks.push_back("terminations." + name + ": " + t.file + ": its imaginary part differs by " + percent(end->mismatch) + " from what causality makes of its real part, which is used");
+  return end;
+}
+
+rosin::outcome<moving_end> end_of_table(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
+  const auto end = completed(rig, t, which, impedance_Ns_m, remarks);
+  if (!end) return rosin::failure{end.error()};
   return wrapped(*end, [e = *end](std::complex<double> s) { return e.at(s); });
+}
+
+rosin::modal_termination declared_modes(const rosin::termination& t, double impedance_Ns_m) {
+  rosin::modal_termination out;
+  for (const auto& m : t.modes) out.modes.push_back({m.frequency_Hz, m.q, impedance_Ns_m / m.mass_kg});
+  return out;
+}
+
+/// A table by modes, as far as the string can feel it: from well below its pitch to where the completed table has faded.
+rosin::outcome<rosin::modal_termination> modes_of_table(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
+  const auto end = completed(rig, t, which, impedance_Ns_m, remarks);
+  if (!end) return rosin::failure{end.error()};
+  const auto like = rosin::as_modes(*end, {.from_Hz = rig.string.fundamental_Hz / 8, .to_Hz = 2 * t.admittance.back().frequency_Hz});
+  if (!like) return rosin::failure{place_of(rig, which) + ": " + like.error()};
+  remarks.push_back(std::string{"terminations."} + (which == 0 ? "near" : "far") + ": " + t.file + ": by " + std::to_string(like->end.modes.size()) +
+                    " modes, whose reflection differs from the table's by " + rosin::detail::figure(100 * like->mismatch, "%.2g") + " % of what moves");
+  return like->end;
 }
 
 }  // namespace
@@ -68,9 +97,25 @@ rosin::outcome<moving_end> declared_end(const rosin::rig& rig, std::size_t which
   if (!(impedance_Ns_m > 0))
     return rosin::failure{rig.file + ": terminations: length_m and tension_N (or impedance_Ns_m) are needed to set an admittance against the string's"};
   if (end->kind == form::table) return end_of_table(rig, *end, which, impedance_Ns_m, remarks);
-  rosin::modal_termination modes;
-  for (const auto& m : end->modes) modes.modes.push_back({m.frequency_Hz, m.q, impedance_Ns_m / m.mass_kg});
-  return end_of_modes(modes);
+  return end_of_modes(declared_modes(*end, impedance_Ns_m));
+}
+
+rosin::outcome<std::array<rosin::modal_termination, 2>> simulated_ends(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks) {
+  std::array<rosin::modal_termination, 2> out;
+  for (std::size_t which = 0; which < 2; ++which) {
+    const auto& end = end_of(rig, which);
+    if (!end || end->kind == form::rigid) continue;
+    if (end->kind == form::fit)
+      return rosin::failure{place_of(rig, which) + ": \"fit\" cannot be simulated: it asks the plucks, and there are none yet; declare \"rigid\", modes or a file"};
+    if (end->kind == form::modes) {
+      out[which] = declared_modes(*end, impedance_Ns_m);
+      continue;
+    }
+    auto modes = modes_of_table(rig, *end, which, impedance_Ns_m, remarks);
+    if (!modes) return rosin::failure{modes.error()};
+    out[which] = *std::move(modes);
+  }
+  return out;
 }
 
 }  // namespace tool

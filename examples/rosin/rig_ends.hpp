@@ -6,9 +6,11 @@
 
 #include <rosin/acquire/rig.hpp>
 #include <rosin/calibrate/end_fit.hpp>
+#include <rosin/propagate/termination_modes.hpp>
 #include <rosin/propagate/termination_table.hpp>
 #include <rosin/reconstruct/end_sensitivity.hpp>
 
+#include <array>
 #include <functional>
 
 namespace tool {
@@ -35,6 +37,8 @@ struct fitted_ends {
 
 /// As declared; rigid where it is declared so, or to be fitted. What had to be done to a table is said in `remarks`.
 [[nodiscard]] rosin::outcome<moving_end> declared_end(const rosin::rig& rig, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks);
+/// Both as a simulation steps them: modes as they are, a table by modes that answer as it does (`remarks` tells how well). "fit" fails.
+[[nodiscard]] rosin::outcome<std::array<rosin::modal_termination, 2>> simulated_ends(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks);
 [[nodiscard]] moving_end end_of_modes(const rosin::modal_termination& modes);
 [[nodiscard]] bool any_end_moves(const rosin::rig& rig);
 [[nodiscard]] bool to_be_fitted(const rosin::rig& rig, std::size_t which);

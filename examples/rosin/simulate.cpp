@@ -69,6 +69,8 @@ std::string problem_with(const places& to, const options& given, const rosin::ri
   if (lies_in(to.truth, to.folder)) return to.truth.string() + ": the truth must not lie in the folder of the recordings";
   std::vector<fs::path> all{to.rig, to.truth};
   all.insert(all.end(), to.recordings.begin(), to.recordings.end());
+  for (const auto* end : {&rig.near, &rig.far})
+    if (*end && (*end)->kind == rosin::termination::form::table) all.push_back(to.folder / (*end)->file);
   std::copy_if(to.tables.begin(), to.tables.end(), std::back_inserter(all), [](const auto& p) { return !p.empty(); });
   for (const auto& path : all) {
     std::error_code ignored;
@@ -104,9 +106,22 @@ std::optional<rosin::failure> write_takes(const options& given, const provenance
   return std::nullopt;
 }
 
+/// Tables of admittance that the rig file names.
+std::optional<rosin::failure> write_tables_of_ends(const options& given, const rosin::rig& rig, const places& to) {
+  for (const auto* end : {&rig.near, &rig.far}) {
+    if (!*end || (*end)->kind != rosin::termination::form::table) continue;
+    const auto text = read_text(rig.path_of((*end)->file));
+    if (!text) return rosin::failure{text.error()};
+    if (end == &rig.far && rig.near && rig.near->file == rig.far->file) continue;  // one file for both
+    if (auto why = write_text(to.folder / (*end)->file, *text, given.existing())) return why;
+  }
+  return std::nullopt;
+}
+
 /// The rig file last: whoever finds it finds all that it names.
-std::optional<rosin::failure> write_all(const options& given, const provenance& from, const simulation_plan& plan,
+std::optional<rosin::failure> write_all(const options& given, const provenance& from, const rosin::rig& rig, const simulation_plan& plan,
                                         const std::vector<simulated_take>& takes, const places& to, const std::string& declared) {
+  if (auto why = write_tables_of_ends(given, rig, to)) return why;
   if (auto why = write_takes(given, from, plan, takes, to)) return why;
   std::vector<std::string> tables;
   for (const auto& table : to.tables) tables.push_back(table.filename().string());
@@ -202,7 +217,7 @@ exit_code run(const options& given, provenance from) {
     return simulate_takes(*plan, bar);
   }();
   if (!takes) return fail(rig->file + ": " + takes.error(), given.json);
-  if (const auto why = write_all(given, from, *plan, *takes, to, *declared)) return fail(why->message, given.json);
+  if (const auto why = write_all(given, from, *rig, *plan, *takes, to, *declared)) return fail(why->message, given.json);
   const auto warned = warnings(*plan, *takes);
   if (given.json) print(result_json(*plan, *takes, to, warned, from));
   else print_text(*plan, *takes, to, warned);

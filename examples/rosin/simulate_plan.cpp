@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "simulate_plan.hpp"
 
+#include "rig_ends.hpp"
 #include "rig_input.hpp"
 
 #include <rosin/adapt/problem_log.hpp>
@@ -29,17 +30,18 @@ double deviation(const simulation_plan& plan, const std::string& name, double sd
 
 std::string digits(double x) { return rosin::value_range::number(x); }
 
-bool has_modes(const std::optional<rosin::termination>& end) { return end && end->kind == rosin::termination::form::modes; }
+/// A table is simulated by modes too.
+bool has_modes(const std::optional<rosin::termination>& end) {
+  return end && (end->kind == rosin::termination::form::modes || end->kind == rosin::termination::form::table);
+}
+
+bool leads_out(const std::filesystem::path& file) { return file.is_absolute() || *file.lexically_normal().begin() == ".."; }
 
 /// Whatever the modal simulation has no means for.
-void refuse_unknown_physics(const rosin::rig& rig, rosin::problem_log& log, std::vector<std::string>& notes) {
-  const auto ends = {std::pair{"near", &rig.near}, std::pair{"far", &rig.far}};
-  for (const auto& [name, end] : ends) {
-    if (!*end || (*end)->kind == rosin::termination::form::rigid) continue;
-    if ((*end)->kind == rosin::termination::form::fit) notes.push_back(std::string{"terminations."} + name + " = \"fit\": simulated as rigid");
-    if ((*end)->kind == rosin::termination::form::table)
-      log.add(0, std::string{"terminations."} + name, (*end)->file + ": a table of admittance cannot be simulated; only rigid terminations and modes can");
-  }
+void refuse_unknown_physics(const rosin::rig& rig, rosin::problem_log& log) {
+  for (const auto& [name, end] : {std::pair{"near", &rig.near}, std::pair{"far", &rig.far}})
+    if (*end && (*end)->kind == rosin::termination::form::table && leads_out(std::filesystem::path{(*end)->file}))
+      log.add(0, std::string{"terminations."} + name, (*end)->file + " leads out of the folder of the rig");
   const auto physics = rig.model ? rig.model->physics : std::vector<std::string>{};
   for (const auto& name : physics)
     if (std::find(can_simulate.begin(), can_simulate.end(), name) == can_simulate.end())
@@ -63,7 +65,7 @@ void refuse_file(const rosin::take& take, std::set<std::string>& files, rosin::p
   const auto path = std::filesystem::path{take.file}.lexically_normal();
   const std::string place = "take \"" + take.name + "\".file";
   if (path.extension() != ".wav") log.add(take.line, place, "is " + take.file + "; simulated recordings are WAV files, the name must end in .wav");
-  if (path.is_absolute() || *path.begin() == "..") log.add(take.line, place, take.file + " leads out of the folder of the rig");
+  if (leads_out(path)) log.add(take.line, place, take.file + " leads out of the folder of the rig");
   if (!files.insert(path.string()).second) log.add(take.line, place, take.file + " is the file of another take too");
 }
 
@@ -123,13 +125,6 @@ std::optional<rosin::failure> set_string(const rosin::rig& rig, simulation_plan&
   scatter(s.tension_N, "tension_N", rig.string.impedance_Ns_m ? values.impedance_Ns_m : values.tension_N);
   scatter(s.bending_stiffness_Nm2, "bending_stiffness_Nm2", values.bending_stiffness_Nm2);
   return std::nullopt;
-}
-
-void set_ends(const rosin::rig& rig, simulation_plan& plan) {
-  for (const auto& [end, declared] : {std::pair{std::size_t{0}, &rig.near}, std::pair{std::size_t{1}, &rig.far}}) {
-    if (!has_modes(*declared)) continue;
-    for (const auto& m : (*declared)->modes) plan.burden.string.ends[end].modes.push_back({m.frequency_Hz, m.q, plan.rig.string.impedance_Ns_m() / m.mass_kg});
-  }
 }
 
 void set_channels(const rosin::rig& rig, simulation_plan& plan) {
@@ -200,12 +195,14 @@ rosin::outcome<simulation_plan> plan_simulation(const rosin::rig& rig, std::opti
   else if (named) plan.seed = static_cast<std::uint64_t>(*rig.simulate->seed);
   else plan.assumed.emplace_back("simulate.seed = 1, none given");
   set_recording(rig, plan, log);
-  refuse_unknown_physics(rig, log, plan.notes);
+  refuse_unknown_physics(rig, log);
   refuse_channels(rig, log);
   refuse_takes(rig, plan.duration_s, log);
   if (!log.empty()) return log.to_failure();
   if (auto why = set_string(rig, plan)) return *why;
-  set_ends(rig, plan);
+  auto ends = simulated_ends(rig, plan.rig.string.impedance_Ns_m(), plan.notes);
+  if (!ends) return rosin::failure{ends.error()};
+  plan.burden.string.ends = *std::move(ends);
   auto friction = choose_friction(rig, plan.assumed, plan.notes);
   if (!friction) return rosin::failure{friction.error()};
   plan.friction = *std::move(friction);

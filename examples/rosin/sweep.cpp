@@ -5,6 +5,7 @@
 //
 #include "commands.hpp"
 #include "progress.hpp"
+#include "rig_ends.hpp"
 #include "rig_input.hpp"
 #include "simulate_friction.hpp"
 #include "sweep_plane.hpp"
@@ -34,6 +35,7 @@ struct options {
 /// What every point has in common.
 struct sweep_setup {
   rosin::modal_rig rig{};
+  std::array<rosin::modal_termination, 2> ends{};
   chosen_friction friction{};
   double position = 0, force_N = 0, speed_m_s = 0, duration_s = 0;
   rosin::wave_settings settings{};
@@ -58,7 +60,7 @@ public:
 
   [[nodiscard]] sweep_result operator()(double position, double force_N, double acceleration_m_s2) {
     if (position != position_) {
-      design_ = std::make_unique<rosin::outcome<rosin::wave_design>>(rosin::design_wave(setup_.rig, position, setup_.settings));
+      design_ = std::make_unique<rosin::outcome<rosin::wave_design>>(rosin::design_wave(setup_.rig, position, setup_.settings, setup_.ends));
       position_ = position;
     }
     const auto law = law_at(setup_.friction, force_N);
@@ -104,12 +106,12 @@ std::optional<rosin::failure> read_shard(const std::string& text, sweep_setup& s
 
 /// The string and its bow from the rig file; `--` options win over the first bowed take.
 std::optional<rosin::failure> read_setup(const rosin::rig& rig, const options& given, sweep_setup& setup, std::vector<std::string>& notes) {
-  for (const auto* end : {&rig.near, &rig.far})
-    if (*end && (*end)->kind != rosin::termination::form::rigid && (*end)->kind != rosin::termination::form::fit)
-      return rosin::failure{rig.file + ": terminations: only rigid terminations can be simulated"};
   const auto string = nominal_string(rig, notes);
   if (!string) return rosin::failure{string.error()};
   setup.rig.string = *string;
+  auto ends = simulated_ends(rig, string->impedance_Ns_m(), notes);
+  if (!ends) return rosin::failure{ends.error()};
+  setup.ends = *std::move(ends);
   if (rig.torsion) setup.rig.torsion = {rig.torsion->speed_ratio, rig.torsion->impedance_ratio, rig.torsion->q};
   auto friction = choose_friction(rig, notes, notes);
   if (!friction) return rosin::failure{friction.error()};

@@ -96,11 +96,38 @@ read -r off_N off_m_s < <(delta fitted.csv delta)
 holds "$off_N < 0.007 && $off_N < 0.5 * $rigid_N"
 holds "$off_m_s < 0.007 && $off_m_s < 0.5 * $rigid_m_s"
 
-# what the simulation has no means for
-printf 'frequency_Hz,admittance_re,admittance_im\n100,1e-3,0\n9000,1e-3,0\n' >bridge.csv
+# the same end as a file: the same motion, but for what a table cannot hold
+awk 'BEGIN {
+  print "frequency_Hz,admittance_re,admittance_im"
+  for (f = 10; f <= 12000; f += 10) {
+    w = 2 * 3.14159265358979 * f; w0 = 2 * 3.14159265358979 * 2400; a = w0 * w0 - w * w; b = w * w0 / 12; d = 0.004 * (a * a + b * b)
+    printf "%g,%.9g,%.9g\n", f, w * b / d, w * a / d
+  }
+}' >bridge.csv
 sed 's/^far = { modes.*/far = "bridge.csv"/' rig.toml >table.toml
-expect 2 simulate table.toml --out refused
-says "terminations.far: bridge.csv: a table of admittance cannot be simulated; only rigid terminations and modes can"
+expect 0 simulate table.toml --out of-table
+says "note: terminations.far: bridge.csv: by "
+cmp -s bridge.csv of-table/bridge.csv || { echo "FAILED: the table is not beside the rig file that names it"; failures=$((failures + 1)); }
+mkdir taken
+cp bridge.csv taken
+expect 2 simulate table.toml --out taken
+says "taken/bridge.csv: exists already"
+read -r table_N table_m_s < <("$tool" compare of-table-truth/bow-1.csv made-truth/bow-1.csv --json | sed -n "s/^ *\"delta\": \([0-9.e+-]*\),*$/\1/p" | head -n 2 | paste -s -d ' ')
+holds "$table_N < 0.05"
+holds "$table_m_s < 0.05"
+
+# what the simulation has no means for
+sed 's/^far = { modes.*/far = "fit"/' rig.toml >fit.toml
+expect 2 simulate fit.toml --out refused
+says 'fit.toml: terminations.far: "fit" cannot be simulated: it asks the plucks, and there are none yet; declare "rigid", modes or a file'
+printf 'frequency_Hz,admittance_re,admittance_im\n100,1e-3,0\n9000,1e-3,0\n' >short.csv
+sed 's/^far = { modes.*/far = "short.csv"/' rig.toml >short.toml
+expect 2 simulate short.toml --out refused
+says "short.toml: terminations.far: short.csv: an admittance needs 8 points at least"
+mkdir inner
+sed 's/^far = { modes.*/far = "..\/bridge.csv"/' rig.toml >inner/rig.toml
+expect 2 simulate inner --out refused
+says "terminations.far: ../bridge.csv leads out of the folder of the rig"
 sed 's/^near = { index.*/&\nmoved = { index = 2, quantity = "string-displacement", metres_per_full_scale = 0.01 }/' rig.toml >moved.toml
 expect 2 simulate moved.toml --out refused
 says "channels.moved.quantity: a displacement cannot be simulated where [terminations] move"
