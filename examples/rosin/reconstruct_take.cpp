@@ -270,7 +270,9 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   if (!limits) return rosin::failure{limits.error()};
   r.limits = *limits;
   const auto position = rig.position_of(take);
-  if (!position) return rosin::failure{rig.file + ":" + std::to_string(take.line) + ": take \"" + take.name + "\": the position of the contact is unknown"};
+  if (!position)
+    return rosin::failure{rig.file + ":" + std::to_string(take.line) + ": take \"" + take.name + "\": " +
+                          (take.position_profile.empty() ? "the position of the contact is unknown" : "the bow travels along the string; the force is reconstructed at one place only")};
   r.before = calibration_at(calibration, *position, rig.position_tolerance.value_or(rosin::detail::default_position_tolerance) / 2, r.warnings);
   if (const auto why = cannot_start(take, read, r)) return *why;
   limit_loss(r.before, r.limits, r.warnings);

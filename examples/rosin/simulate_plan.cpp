@@ -76,10 +76,11 @@ void refuse_takes(const rosin::rig& rig, double duration_s, rosin::problem_log& 
     refuse_file(take, files, log);
     if (take.kind == take_kind::quiet) continue;
     if (take.position_unknown) bad("position_unknown", "a simulation has to know where the string is touched");
-    else if (!rig.position_of(take)) bad("contact_position", "is missing, and there is no [contact] position");
+    else if (!rig.position_of(take) && take.position_profile.empty()) bad("contact_position", "is missing, and there is no [contact] position");
     if (take.kind == take_kind::pluck && !take.force_N) bad("force_N", "is missing: a simulation has to know the force");
     if (take.kind == take_kind::bow && !take.speed_m_s && take.speed_profile_m_s.empty()) bad("speed_m_s", "is missing, and there is no profile");
     if (take.kind == take_kind::bow && !take.normal_force_N && take.normal_force_profile_N.empty()) bad("normal_force_N", "is missing, and there is no profile");
+    if (!take.position_profile.empty() && (has_modes(rig.near) || has_modes(rig.far))) bad("position_profile", "a bow that travels cannot be simulated where [terminations] move");
     if (take.start_s && !take.speed_profile_m_s.empty()) bad("start_s", "stands beside speed_profile_m_s, whose times count from the first sample");
     if (take.start_s.value_or(usual_release_s) >= duration_s) bad("start_s", "the take ends before; see [simulate] duration_s");
     if (take.kind == take_kind::pluck && take.start_s && !(*take.start_s > 0)) bad("start_s", "the wire has to hold the string at the first sample");
@@ -140,7 +141,7 @@ void set_channels(const rosin::rig& rig, simulation_plan& plan) {
 
 /// The place where the string is really touched: one error for each declared place.
 double true_position(const rosin::rig& rig, const rosin::take& take, const simulation_plan& plan) {
-  const double declared = rig.position_of(take).value_or(0.5);
+  const double declared = take.position_profile.empty() ? rig.position_of(take).value_or(0.5) : take.position_profile.front().second;
   if (!rig.simulate || !rig.simulate->nominal_scatter) return declared;
   const double sd = rig.position_tolerance.value_or(rosin::detail::default_position_tolerance) / 2;
   return std::clamp(declared + deviation(plan, "position " + digits(declared), sd), declared / 2, (1 + declared) / 2);
@@ -160,7 +161,9 @@ true_take realise(const rosin::rig& rig, const rosin::take& take, simulation_pla
     static_cast<rosin::profiled_rod&>(out.rod) = {
                .steady = {.speed_m_s = take.speed_m_s.value_or(0), .normal_force_N = take.normal_force_N.value_or(0), .start_s = begin},
                .speed_m_s = take.speed_profile_m_s,
-               .normal_force_N = take.normal_force_profile_N};
+               .normal_force_N = take.normal_force_profile_N,
+               .place = take.position_profile};
+  for (auto& [t, x] : out.rod.place) x = std::clamp(x + out.position - take.position_profile.front().second, x / 2, (1 + x) / 2);
   return out;
 }
 

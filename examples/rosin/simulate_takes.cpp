@@ -18,7 +18,8 @@ rosin::outcome<rosin::modal_take> happen(const simulation_plan& plan, const true
   if (take.declared.kind == take_kind::pluck)
     return plain ? rosin::simulate_pluck(plan.rig, take.pluck, plan.settings) : rosin::simulate_pluck(plan.rig, plan.burden, take.pluck, plan.settings);
   if (take.declared.kind == take_kind::bow) {
-    const rosin::modal_stroke stroke{.position = take.position, .duration_s = plan.duration_s};
+    const rosin::modal_stroke stroke{.position = take.position, .duration_s = plan.duration_s, .account = true};
+    if (!plain && take.rod.travels()) return rosin::failure{"position_profile: a bow that travels cannot be simulated on a string that carries or ends on anything"};
     const auto rig = stretched(plan.rig, plan.tension_drift);
     return std::visit(
         [&](const auto& law) {

@@ -53,9 +53,17 @@ json profile_json(const rosin::profile& points) {
   return out;
 }
 
+json energy_json(const std::optional<rosin::stroke_energy>& e) {
+  if (!e) return nullptr;
+  const auto motion = [](const rosin::motion_energy& m) { return json{{"received_J", m.received_J}, {"stored_J", m.stored_J}, {"lost_J", m.lost_J}}; };
+  return {{"rod_J", e->rod_J},           {"friction_J", e->friction_J},     {"transverse", motion(e->transverse)}, {"torsion", motion(e->torsion)},
+          {"left_out_J", e->left_out_J}, {"string_error", e->string_error()}, {"error", e->error()}};
+}
+
 json bow_json(const true_take& take, const simulated_take& simulated) {
   const auto& rod = take.rod;
   json out{{"position", take.position}};
+  if (!rod.place.empty()) out["position_profile"] = profile_json(rod.place);
   if (rod.speed_m_s.empty()) out.update({{"speed_m_s", rod.steady.speed_m_s}, {"start_s", rod.steady.start_s}, {"rise_s", rod.steady.rise_s}});
   else out["speed_profile_m_s"] = profile_json(rod.speed_m_s);
   if (rod.normal_force_N.empty()) out["normal_force_N"] = rod.steady.normal_force_N;
@@ -63,6 +71,7 @@ json bow_json(const true_take& take, const simulated_take& simulated) {
   out["motion"] = name_of(motion_of(simulated.truth));
   out["slips"] = simulated.truth.slips;
   out["unconverged_steps"] = simulated.truth.unconverged;
+  out["energy"] = energy_json(simulated.truth.energy);
   return out;
 }
 

@@ -315,6 +315,20 @@ sed 's/1.65/0.5/; s/normal_force_N = 0.3/normal_force_N = 30/' rig.toml >loud.to
 expect 0 simulate loud.toml --out loud
 says "warning: take pluck-1, channel near:" "samples beyond full scale" "warning: take bow-1: the string is sticking in the second half"
 
+# a bow that travels along the string, and one that is lifted; the books of energy
+sed 's/^normal_force_N = 0.3/&\nposition_profile = [[0, 0.3], [0.1, 0.27]]/' rig.toml >travels.toml
+expect 0 simulate travels.toml --out travels
+says "stick-slip"
+holds "$(key travels-truth/truth.json string_error) ^ 2 < 1e-20 && $(key travels-truth/truth.json error) ^ 2 < 1e-4 && $(key travels-truth/truth.json rod_J) > 0"
+grep -q '"position_profile"' travels-truth/truth.json || { echo "FAILED: the truth does not tell the way"; failures=$((failures + 1)); }
+grep -q "^position_profile" travels/rig.toml || { echo "FAILED: the rig file does not tell the way"; failures=$((failures + 1)); }
+expect 0 check travels
+sed 's/^normal_force_N = 0.3/&\nnormal_force_profile_N = [[0.04, 0.3], [0.045, 0]]/' rig.toml >lifted.toml
+expect 0 simulate lifted.toml --out lifted
+says "stick-slip"
+refuse 's/^normal_force_N = 0.3/&\nposition_profile = [[0, 0.3], [0.1, 1.2]]/' "position_profile[1][1]: must be larger than 0 and less than 1"
+refuse 's|^\[torsion\]|[terminations]\nfar = { modes = [ { frequency_Hz = 460, q = 9, mass_kg = 0.1 } ] }\n\n&|; s/^normal_force_N = 0.3/&\nposition_profile = [[0, 0.3]]/' "cannot be simulated where [terminations] move"
+
 # rosin compare: against itself, against another take, and what does not belong together
 expect 0 compare made-truth/bow-1.csv made-truth/bow-1.csv --at-most 0
 says "force_N: Delta 0.00000; scale 1.00000"

@@ -110,6 +110,7 @@ struct take {
   std::optional<double> force_N, force_tolerance, strength;       ///< pluck
   std::optional<double> speed_m_s, normal_force_N;                ///< bow, once the stroke is steady
   profile speed_profile_m_s, normal_force_profile_N;              ///< bow, empty where unknown
+  profile position_profile;                                       ///< bow, empty where it stays at one place of the string
   std::optional<double> contact_position, start_s;                ///< start_s: release or onset, for simulate
   bool position_unknown = false;
   bool hold_out = false;  ///< never fitted, only predicted
@@ -149,9 +150,9 @@ struct rig {
   }
   /// Both terminations carry a force transducer: all that reconstruction needs.
   [[nodiscard]] bool has_both_forces() const noexcept { return channel("near") != nullptr && channel("far") != nullptr; }
-  /// Where this take was plucked or bowed; empty where nobody knows.
+  /// Where this take was plucked or bowed; empty where nobody knows, or the bow travels along the string.
   [[nodiscard]] std::optional<double> position_of(const take& t) const noexcept {
-    if (t.position_unknown) return std::nullopt;
+    if (t.position_unknown || !t.position_profile.empty()) return std::nullopt;
     return t.contact_position ? t.contact_position : contact_position;
   }
   /// Path of a file named in the rig file.

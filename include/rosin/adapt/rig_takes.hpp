@@ -36,7 +36,7 @@ inline void read_pluck(toml_fields& fields, take& t, bool forces) {
   if (forces && !fields.has("force_N")) fields.missing("force_N");
   t.force_N = fields.number("force_N", up_to(1e4));
   t.force_tolerance = fields.number("force_tolerance", {0, 1, false, true});
-  for (const char* key : {"speed_m_s", "normal_force_N", "speed_profile_m_s", "normal_force_profile_N"})
+  for (const char* key : {"speed_m_s", "normal_force_N", "speed_profile_m_s", "normal_force_profile_N", "position_profile"})
     fields.refuse(key, "does not belong to a take of kind pluck");
 }
 
@@ -47,12 +47,15 @@ inline void read_bow(toml_fields& fields, take& t, bool forces) {
   t.normal_force_N = fields.number("normal_force_N", up_to(1e4));
   t.speed_profile_m_s = read_profile(fields, "speed_profile_m_s", {-100, 100});
   t.normal_force_profile_N = read_profile(fields, "normal_force_profile_N", zero_to(1e4));
+  t.position_profile = read_profile(fields, "position_profile", inside_unit);
+  for (const char* key : {"contact_position", "position_unknown"})
+    if (!t.position_profile.empty() && fields.has(key)) fields.refuse(key, "contradicts position_profile, which stands beside it");
   for (const char* key : {"force_N", "force_tolerance"}) fields.refuse(key, "does not belong to a take of kind bow");
 }
 
 inline void read_quiet(toml_fields& fields) {
   for (const char* key : {"force_N", "force_tolerance", "speed_m_s", "normal_force_N", "speed_profile_m_s",
-                          "normal_force_profile_N", "contact_position", "position_unknown", "strength", "start_s"})
+                          "normal_force_profile_N", "position_profile", "contact_position", "position_unknown", "strength", "start_s"})
     fields.refuse(key, "does not belong to a take of kind quiet");
 }
 
@@ -64,7 +67,7 @@ inline void read_place(toml_fields& fields, take& t, bool needed) {
   t.start_s = fields.number("start_s", zero_to(3600));
   if (t.position_unknown && t.contact_position)
     fields.refuse("position_unknown", "contradicts contact_position, which stands beside it");
-  if (needed && !t.position_unknown && !fields.has("contact_position"))
+  if (needed && !t.position_unknown && !fields.has("contact_position") && !fields.has("position_profile"))
     fields.log().add(fields.line(), fields.path("contact_position"), "is missing, and there is no [contact] position");
 }
 

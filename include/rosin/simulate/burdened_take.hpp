@@ -86,6 +86,7 @@ template <FrictionLaw Law, class Motion>
   out.reserve(steps);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(contacts);
   std::size_t slipped = 0;
+  const std::size_t end = detail::pressed_steps(motion, still, steps, step_s);
   bool before = false;
   for (auto* signal : {&out.end_N[0], &out.end_N[1], &out.force_N, &out.centre_m_s, &out.twist_m_s, &out.rod_m_s, &out.temperature_K}) signal->assign(still, 0.0);
   for (std::size_t n = still; n < steps; ++n) {
@@ -125,9 +126,9 @@ template <FrictionLaw Law, class Motion>
     out.rod_m_s.push_back(state.velocity_m_s - yielded);
     out.slips += slipping && !before ? 1 : 0;
     before = slipping;
-    if (2 * n > steps) slipped += slipping ? 2 : 0;
+    slipped += slipping && n > end / 2 && n < end ? 1 : 0;
   }
-  out.slipping = static_cast<double>(slipped) / static_cast<double>(steps);
+  out.slipping = static_cast<double>(slipped) / static_cast<double>(end - end / 2);
   return out;
 }
 

@@ -90,12 +90,21 @@ void set_out(stroke_steps& s, modal_contact& contact, const Motion& motion, std:
   s.rest.assign(moves ? first : 1, contact.left_out());
 }
 
+/// Steps up to which the rod presses; all, where it never does. `first`: the one at t = 0.
+template <class Motion>
+[[nodiscard]] std::size_t pressed_steps(const Motion& motion, std::size_t first, std::size_t steps, double step_s) noexcept {
+  for (std::size_t end = steps; end > first; --end)
+    if (motion(static_cast<double>(end - 1 - first) * step_s).normal_force_N > 0) return end;
+  return steps;
+}
+
 template <class Law, class Motion>
 void run_steps(stroke_steps& s, modal_take& take, modal_contact& contact, Law& law, const Motion& motion, std::size_t first,
                double step_s) {
   std::size_t slipped = 0;
   bool before = false;
   const bool moves = travels(motion);
+  const std::size_t end = pressed_steps(motion, first, s.force.size(), step_s);
   for (std::size_t i = first; i < s.force.size(); ++i) {
     const double t = static_cast<double>(i - first) * step_s;
     const rod_state rod = motion(t);
@@ -112,9 +121,9 @@ void run_steps(stroke_steps& s, modal_take& take, modal_contact& contact, Law& l
     take.unconverged += answer.converged ? 0U : 1U;
     take.slips += answer.slipping && !before ? 1U : 0U;
     before = answer.slipping;
-    slipped += before && i > s.force.size() / 2 ? 1U : 0U;
+    slipped += before && i > end / 2 && i < end ? 1U : 0U;
   }
-  take.slipping = static_cast<double>(slipped) / static_cast<double>(s.force.size() - s.force.size() / 2);
+  take.slipping = static_cast<double>(slipped) / static_cast<double>(end - end / 2);
 }
 
 inline void add_scaled(std::vector<double>& to, double factor, const std::vector<double>& from) {

@@ -43,7 +43,7 @@ struct modal_take {
   std::vector<double> temperature_rise_K{};    ///< of the contact, where the friction law has one
   std::size_t unconverged = 0;                 ///< steps whose contact equation was not solved to tolerance
   std::size_t slips = 0;                       ///< times the contact went from sticking to slipping
-  double slipping = 0;                         ///< share of the steps of the second half that slipped, 0 to 1
+  double slipping = 0;                         ///< share of the steps that slipped of the second half, or of that up to where the rod was lifted; 0 to 1
   std::optional<stroke_energy> energy{};       ///< of strokes, where it was asked for
 
   [[nodiscard]] std::size_t size() const noexcept { return force_near_N.size(); }
@@ -52,7 +52,7 @@ struct modal_take {
 /// What a bowed string does once the start is over.
 enum class bowed_motion { sticking, stick_slip, sliding };
 
-/// By the second half of the take: no slip at all, both, or hardly any sticking.
+/// By the second half of the take (of the stroke, if the rod was lifted): no slip at all, both, or hardly any sticking.
 [[nodiscard]] inline bowed_motion motion_of(const modal_take& take) noexcept {
   if (!(take.slipping > 0)) return bowed_motion::sticking;
   return take.slipping < 0.95 ? bowed_motion::stick_slip : bowed_motion::sliding;

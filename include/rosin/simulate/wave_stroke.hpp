@@ -66,6 +66,7 @@ bool run_waves(wave_string<T>& string, Law& law, const Motion& motion, wave_reco
   std::size_t slipped = 0;
   std::ptrdiff_t copied = 0, block = 0;
   bool before = false;
+  const std::size_t end = pressed_steps(motion, first, s.force.size(), step_s);
   for (std::size_t i = first; i < s.force.size(); ++i) {
     const rod_state rod = motion(static_cast<double>(i - first) * step_s);
     const auto answer = law(string.line(rod));
@@ -76,13 +77,13 @@ bool run_waves(wave_string<T>& string, Law& law, const Motion& motion, wave_reco
     take.unconverged += answer.converged ? 0U : 1U;
     take.slips += answer.slipping && !before ? 1U : 0U;
     before = answer.slipping;
-    slipped += before && i > s.force.size() / 2 ? 1U : 0U;
+    slipped += before && i > end / 2 && i < end ? 1U : 0U;
     if (++block < string.kernels().block) continue;
     block = 0;
     copy_waves(string, out, copied);
     if (!(std::abs(s.centre[i]) < 1e6)) return false;
   }
-  take.slipping = static_cast<double>(slipped) / static_cast<double>(s.force.size() - s.force.size() / 2);
+  take.slipping = static_cast<double>(slipped) / static_cast<double>(end - end / 2);
   return true;
 }
 

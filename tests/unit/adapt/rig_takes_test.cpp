@@ -37,6 +37,9 @@ TEST_CASE("[[take]]: each key, its type, range and name") {
       {"[[0, 0], [0.02, 0.2]]", "[]", "rig.toml:64: take[2].speed_profile_m_s: is empty"},
       {"[0.02, 0.2]]", "[0.02]]", "rig.toml:64: take[2].speed_profile_m_s[1]: must be a pair [time in s, value]"},
       {"[0.02, 0.2]]", "[0, 0.2]]", "rig.toml:64: take[2].speed_profile_m_s[1]: is not later than the point before it"},
+      {"hold_out = true", "position_profile = [[0, 0.3], [0.1, 1]]", "rig.toml:65: take[2].position_profile[1][1]: must be larger than 0 and less than 1, is 1"},
+      {"hold_out = true", "position_profile = [[0, 0.3]]\ncontact_position = 0.2", "rig.toml:66: take[2].contact_position: contradicts position_profile, which stands beside it"},
+      {"contact_position = 0.25", "position_profile = [[0, 0.3]]", "rig.toml:51: take[0].position_profile: does not belong to a take of kind pluck"},
       {"[0.02, 0.2]]", "[0.02, 'x']]", "rig.toml:64: take[2].speed_profile_m_s[1][1]: must be a number"},
   };
   CHECK_BAD_KEYS(rows)
@@ -47,6 +50,7 @@ TEST_CASE("positions: of the take, or of [contact], or unknown and said so") {
   CHECK(test::problems_of(without) == "rig.toml:56: take[2].contact_position: is missing, and there is no [contact] position");
   CHECK(test::problems_of(test::changed("hold_out = true", "position_unknown = true", without)) == "");
   CHECK(test::problems_of(test::changed("hold_out = true", "contact_position = 0.1", without)) == "");
+  CHECK(test::problems_of(test::changed("hold_out = true", "position_profile = [[0, 0.1], [0.2, 0.15]]", without)) == "");
 }
 
 TEST_CASE("no takes, or something else in their place") {

@@ -157,6 +157,22 @@ TEST_CASE("signals have the length asked for, and nothing moves before the rod d
   CHECK(!rosin::simulate_stroke(e_rig(), curve_law{}, rosin::steady_rod{}, {.position = 0}));
 }
 
+TEST_CASE("lifted, the rod leaves a string that rings freely, and what it did before is told") {
+  const auto rod = [](double t) noexcept { return rosin::rod_state{0.2, t < 0.03 ? 0.3 : 0.0}; };
+  const auto take = rosin::simulate_stroke(e_rig(50), curve_law{}, rod, {.duration_s = 0.07, .account = true}, quick);
+  REQUIRE(take);
+  CHECK(rosin::motion_of(*take) == rosin::bowed_motion::stick_slip);
+  const auto power = [&](double from_s) {  // of the near force over 0.01 s
+    double sum = 0;
+    for (auto n = static_cast<std::size_t>(from_s * 128e3); n < static_cast<std::size_t>((from_s + 0.01) * 128e3); ++n) sum += take->force_near_N[n] * take->force_near_N[n];
+    return sum;
+  };
+  for (std::size_t n = 3900; n < take->size(); ++n) CHECK(std::abs(take->contact_force_N[n]) < 1e-12);
+  CHECK(power(0.055) / power(0.045) < std::exp(-2 * pi * 660 / 50 * 0.01));  // the first partial decays slowest
+  CHECK(power(0.055) / power(0.045) > 0.7 * std::exp(-2 * pi * 660 / 50 * 0.01));
+  CHECK(std::abs(take->energy->string_error()) < 1e-10);
+}
+
 TEST_CASE("a rod that travels: standing still it is the fixed one; on its way energy still adds up, and the pattern of slips goes with it") {
   struct travelling : rosin::steady_rod {
     double from = 0.3, to = 0.3;
