@@ -21,6 +21,8 @@ inline std::vector<double> geometric(double from, double to, double ratio) {
 }
 /// What yields between string and load: at most what a hundredth of the string's length would.
 inline double most_bond_s(const string_facts& s) { return 0.01 / (2 * s.fundamental_Hz); }
+/// How late a load or a support may answer.
+inline constexpr double most_lag_s = 1e-5;
 /// Relative to Z where the impedance is unknown.
 inline double unit_of(const string_facts& s) { return s.impedance_Ns_m > 0 ? s.impedance_Ns_m : 1.0; }
 
@@ -64,23 +66,26 @@ inline pluck_effect point_mass_effect(const string_facts& f) {
 
 /// A finger, felt; item 18.
 inline pluck_effect point_damper_effect(const string_facts& f) {
-  const double Z = detail::unit_of(f), bond = detail::most_bond_s(f);
-  pluck_effect e{"point-damper", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"resistance_Ns_m", 0, 50 * Z, 1e-6 * Z}, {"bond_s", -bond, bond, 1e-9, false, -1, false, true}}, {}, 1,
-                 [Z](pluck_scene& s, const double* v, int) { s.scatterers.push_back({v[0], 0, v[1] / Z, 0, v[2]}); }};
+  const double Z = detail::unit_of(f), lag = detail::most_lag_s;
+  pluck_effect e{"point-damper", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"resistance_Ns_m", 0, 50 * Z, 1e-6 * Z}, {"lag_s", -lag, lag, 1e-9, false, -1, false, true}}, {}, 1,
+                 [Z](pluck_scene& s, const double* v, int) { s.scatterers.push_back({v[0], 0, v[1] / Z, 0, 0, v[2]}); }};
   for (int i = 1; i < 64; ++i) e.starts.push_back({i / 64.0, 1e-5 * Z, 0});
   return e;
 }
 
-/// A damped mass on a spring under the string's end; item 1.
+/// A damped mass on a spring under the string's end; item 1. Late or not, at its frequency it moves in phase with the force: the lag is
+/// that of mass and spring, 1/Y = R + (M s + K / s) exp(s lag) = exp(s lag) ((M - R lag) s + R + K / s) to first order.
 inline pluck_effect support_resonance_effect(const string_facts& f, int end) {
-  const double Z = detail::unit_of(f);
+  const double Z = detail::unit_of(f), lag = detail::most_lag_s;
   pluck_effect e{"support-resonance", end, true,
-                 {{"frequency_Hz", 20, f.highest_Hz, 1e-6, true}, {"q", 0.6, 3000, 1e-5, true}, {"per_mass_per_kg", 0, 1e5 / Z, 1e-4 / Z}}, {}, 2,
+                 {{"frequency_Hz", 20, f.highest_Hz, 1e-6, true}, {"q", 0.6, 3000, 1e-5, true}, {"per_mass_per_kg", 0, 1e5 / Z, 1e-4 / Z}, {"lag_s", -lag, lag, 1e-9, false, -1, false, true}}, {}, 2,
                  [Z, end](pluck_scene& s, const double* v, int) {
-                   s.ends[static_cast<std::size_t>(end)].modes.push_back({v[0], v[1], v[2] * Z});
+                   const double heavier = std::max(0.5, 1 - 2 * std::numbers::pi * v[0] * v[3] / v[1]);  // by what the resistance lags
+                   s.ends[static_cast<std::size_t>(end)].modes.push_back({v[0] / std::sqrt(heavier), v[1] * std::sqrt(heavier), v[2] * Z / heavier});
+                   s.ends[static_cast<std::size_t>(end)].lag_s += v[3];
                  }};
   for (const double q : {6.0, 25.0, 100.0})
-    for (const double x : detail::geometric(std::min(100.0, 0.3 * f.fundamental_Hz), 0.8 * f.highest_Hz, 1 + 0.7 / q)) e.starts.push_back({x, q, 1e-2 / Z});
+    for (const double x : detail::geometric(std::min(100.0, 0.3 * f.fundamental_Hz), 0.8 * f.highest_Hz, 1 + 0.7 / q)) e.starts.push_back({x, q, 1e-2 / Z, 0});
   return e;
 }
 

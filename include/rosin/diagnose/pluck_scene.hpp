@@ -20,30 +20,34 @@ namespace rosin {
 
 /// Something on the string: impedance Z_s / Z = mass_s s + resistance + spring_per_s / s, held by a small compliance: nothing is a
 /// point, and what yields between string and load (extent, bond) is to first order a spring in series. May be slightly negative.
+/// The answer may come late, or early: a damper with a little mass is R (1 + s M / R), to first order one that answers M / R early.
 struct scatterer {
   double position = 0.5;    ///< fraction of the length from the near end
   double mass_s = 0;        ///< M / Z
   double resistance = 0;    ///< R / Z
   double spring_per_s = 0;  ///< K / Z
   double bond_s = 0;        ///< Z / K of the bond; 0: rigid
+  double lag_s = 0;         ///< of the force behind the motion
 
   [[nodiscard]] std::complex<double> impedance(std::complex<double> s) const {
     const std::complex<double> z = mass_s * s + resistance + spring_per_s / s;
-    return z / (1.0 + s * bond_s * z);
+    return z / (1.0 + s * bond_s * z) * std::exp(-s * lag_s);
   }
 };
 
-/// A termination that gives way: Z Y(s) = sum of modes + Z / R + Z / (M s).
+/// A termination that gives way: Z Y(s) = (sum of modes + Z / R + Z / (M s)) exp(-s lag). Far above a mode the lag is all that is seen
+/// of the modes beyond: -lag / M, a part of Y in phase with the force.
 struct yielding_end {
   std::vector<admittance_mode> modes;
   double conductance = 0;         ///< Z / R
   double per_free_mass_per_s = 0; ///< Z / M of an end that is nothing but a mass
+  double lag_s = 0;               ///< of the motion behind the force; may be slightly negative
 
   [[nodiscard]] bool rigid() const { return modes.empty() && conductance == 0 && per_free_mass_per_s == 0; }
   [[nodiscard]] std::complex<double> admittance(std::complex<double> s) const {
     std::complex<double> sum = conductance + per_free_mass_per_s / s;
     for (const admittance_mode& m : modes) sum += m(s);
-    return sum;
+    return sum * std::exp(-s * lag_s);
   }
 };
 

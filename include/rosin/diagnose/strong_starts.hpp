@@ -43,10 +43,10 @@ inline void add_support_starts(const scene_data& data, const std::vector<pluck_e
   for (const pluck_effect& e : catalogue) {
     if (!supports(e)) continue;
     pluck_scene probe;
-    const std::array<double, 3> unit{1000, 10, 1};
+    const std::array<double, 4> unit{1000, 10, 1, 0};
     e.apply(probe, unit.data(), 0);
     const double per_mass = probe.ends[static_cast<std::size_t>(e.place)].modes.front().per_mass_per_s;
-    out.push_back({e.id(), extended(data.layout, fitted->plucks.value, e, {mode.frequency_Hz, mode.q, mode.per_mass_per_s / per_mass})});
+    out.push_back({e.id(), extended(data.layout, fitted->plucks.value, e, {mode.frequency_Hz, mode.q, mode.per_mass_per_s / per_mass, 0})});
   }
 }
 

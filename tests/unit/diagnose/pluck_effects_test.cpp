@@ -70,3 +70,21 @@ TEST_CASE("a high-pass that is hardly one changes nothing, once what the held st
         CHECK(level(with, coupled) == doctest::Approx(level(without, plain)).epsilon(1e-3).scale(1));
       }
 }
+
+TEST_CASE("a support that lags still moves in phase with the force at its frequency, with the mass and quality that it says") {
+  const auto support = rosin::support_resonance_effect(guitar_facts, 0);
+  const auto admittance = [&](double lag_s, double f) {
+    rosin::pluck_scene scene;
+    const std::vector<double> v{2500, 10, 300, lag_s};
+    support.apply(scene, v.data(), 0);
+    return scene.ends[0].admittance({0, 2 * std::numbers::pi * f});
+  };
+  CHECK(std::abs(std::arg(admittance(1e-6, 2500))) < 1e-4);
+  CHECK(std::abs(admittance(1e-6, 2500)) == doctest::Approx(std::abs(admittance(0, 2500))).epsilon(1e-4));
+  const auto reactance = [&](double lag_s) { return (1.0 / admittance(lag_s, 2500 * 1.01) - 1.0 / admittance(lag_s, 2500 * 0.99)).imag(); };
+  CHECK(reactance(1e-6) == doctest::Approx(reactance(0)).epsilon(1e-3));
+  const double fast_and_dull[]{50e3, 0.6, 300, 1e-5};
+  rosin::pluck_scene scene;
+  support.apply(scene, fast_and_dull, 0);
+  CHECK(std::isfinite(std::abs(scene.ends[0].admittance({0, 3e5}))));
+}

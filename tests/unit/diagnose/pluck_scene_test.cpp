@@ -38,3 +38,11 @@ TEST_CASE("a load on a bond is softer than the load, and hard as the bond when t
   CHECK(std::abs(held.impedance(s)) == doctest::Approx(1 / std::abs(s * 1e-6)).epsilon(1e-2));
   CHECK(rosin::pluck_scene{}.plain_string());
 }
+
+TEST_CASE("a damper that answers early has mass, an end that answers late gives energy back above its mode") {
+  const rosin::scatterer damper{.resistance = 0.02, .lag_s = -1e-6}, massive{.mass_s = 0.02e-6, .resistance = 0.02};
+  const complex s{0, 2 * std::numbers::pi * 5e3};
+  CHECK(std::abs(damper.impedance(s) - massive.impedance(s)) < 1e-3 * std::abs(damper.impedance(s)));
+  const rosin::yielding_end late{.modes = {{.frequency_Hz = 900, .q = 1000, .per_mass_per_s = 50}}, .lag_s = 1e-6};
+  CHECK(late.admittance({0, 2 * std::numbers::pi * 20e3}).real() == doctest::Approx(-50 * 1e-6).epsilon(0.02));
+}
