@@ -35,8 +35,7 @@ struct glide_shape {
 /// As the sensor's place and the decays have it.
 [[nodiscard]] inline glide_shape shape_by_power(const pickup_ringing& r) {
   glide_shape s{{}, {}, {}, "power of the partials"};
-  double sum = 0;
-  for (const double p : r.power) sum += p;
+  const double sum = r.strength();
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
     s.power.push_back(r.power[i] / sum);
     s.rate_per_s.push_back(2 * detail::as_one(r.tracks[i]).decay_per_s);
@@ -79,25 +78,19 @@ public:
       plain_.push_back(value(path_.size() - 1, 0));
     }
   }
-  [[nodiscard]] double gain(double relative) const {
+  /// By how much ln L rises.
+  [[nodiscard]] double operator()(double relative) const {
     double sum = 0;
     for (std::size_t k = 0; k < which_.size(); ++k) sum += value(k, relative) - plain_[k];
     return sum;
   }
   /// From `about` on, or anywhere.
   [[nodiscard]] glide_found best(double about = 0) const {
-    double at = about, most = about != 0 ? gain(about) : 0;
-    if (about == 0)
+    likelihood_peak top{about, about > 0 ? (*this)(about) : 0};
+    if (!(about > 0))
       for (double g = 4e-6; g < 0.02; g *= 1.35)
-        if (const double v = gain(g); v > most) most = v, at = g;
-    double step = (about == 0 ? 0.16 : 0.02) * at;
-    for (int i = 0; i < 24 && std::abs(step) > 2e-4 * std::abs(at); ++i) {
-      const double here = at;
-      for (const double x : {here - step, here + step})
-        if (const double v = gain(x); v > most) most = v, at = x;
-      if (at == here) step /= 2;
-    }
-    return described(at, most);
+        if (const double v = (*this)(g); v > top.gain) top = {g, v};
+    return described(climbed(*this, top, (about > 0 ? 0.02 : 0.16) * top.at, 2e-4));
   }
 
 private:
@@ -106,14 +99,11 @@ private:
     const partial_track still = without_glide(t, path_[k], relative, 1.5 * r_.tolerance_Hz);
     return log_likelihood(t, detuning_ == 0 ? still.fit.residual : fit_pair(still, detuning_).residual);
   }
-  [[nodiscard]] glide_found described(double at, double most) const {
-    glide_found out{shape_, at, std::numeric_limits<double>::infinity(), most, 0};
-    if (!(at > 0)) return out;
-    double h = 0.001 * at;
-    while (h < 0.5 * at && most - gain(at + h) < 0.5) h *= 2;
-    const double curve = (gain(at + h) - 2 * most + gain(at - h)) / (h * h);
-    if (curve < 0) out.sd = 1 / std::sqrt(-curve);
-    for (std::size_t k = 0; k < which_.size(); ++k) out.agreeing += value(k, at) > plain_[k] ? 1 : 0;
+  [[nodiscard]] glide_found described(likelihood_peak top) const {
+    glide_found out{shape_, top.at, std::numeric_limits<double>::infinity(), top.gain, 0};
+    if (!(top.at > 0)) return out;
+    out.sd = sd_at(*this, top, 0.001 * top.at, 0.5 * top.at);
+    for (std::size_t k = 0; k < which_.size(); ++k) out.agreeing += value(k, top.at) > plain_[k] ? 1 : 0;
     out.agreeing /= static_cast<double>(which_.size());
     return out;
   }

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <complex>
+#include <limits>
 
 namespace rosin {
 
@@ -22,6 +23,31 @@ struct line_pair {
 };
 
 namespace detail {
+
+/// Where a likelihood of one number is highest, and how high.
+struct likelihood_peak {
+  double at = 0, gain = 0;
+};
+
+/// From there on, with smaller steps as soon as neither neighbour is higher.
+template <class Gain>
+likelihood_peak climbed(const Gain& gain, likelihood_peak top, double step, double precision) {
+  for (int i = 0; i < 24 && step > precision * top.at; ++i) {
+    const double here = top.at;
+    for (const double x : {here - step, here + step})
+      if (const double g = gain(x); g > top.gain) top = {x, g};
+    if (top.at == here) step /= 2;
+  }
+  return top;
+}
+
+/// Standard deviation, by the curvature over a distance at which half a unit is lost (from `h` to at most `widest`); without one: infinite.
+template <class Gain>
+double sd_at(const Gain& gain, likelihood_peak top, double h, double widest) {
+  while (h < widest && top.gain - gain(top.at + h) < 0.5) h *= 2;
+  const double curve = (gain(top.at + h) - 2 * top.gain + gain(top.at - h)) / (h * h);
+  return curve < 0 ? 1 / std::sqrt(-curve) : std::numeric_limits<double>::infinity();
+}
 
 struct pair_normals {
   Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
@@ -55,16 +81,21 @@ inline pair_normals normals_of(complex_span z, double rate_Hz, const line_pair& 
   return n;
 }
 
-/// Levenberg and Marquardt from decay and detuning; amplitudes first by themselves.
+/// The amplitudes by themselves.
+inline void set_amplitudes(complex_span z, double rate_Hz, line_pair& p, double relative) {
+  p.amplitude = {};
+  const auto n = normals_of(z, rate_Hz, p, relative);
+  const Eigen::VectorXd c = Eigen::MatrixXd(n.matrix.topLeftCorner(4, 4)).ldlt().solve(Eigen::VectorXd(n.gradient.head(4)));
+  p.amplitude = {std::complex{c[0], c[1]}, std::complex{c[2], c[3]}};
+}
+
+/// Levenberg and Marquardt from decay and detuning.
 inline line_pair fit_pair_from(const partial_track& t, line_pair p, double relative) {
   const complex_span z{t.samples};
   const double centre = full_turn * t.fit.model.centre_Hz;
   p.shift_rad_s = relative * (centre + p.detuning_rad_s);
-  p.amplitude = {};
+  set_amplitudes(z, t.rate_Hz, p, relative);
   auto n = normals_of(z, t.rate_Hz, p, relative);
-  const Eigen::VectorXd c = Eigen::MatrixXd(n.matrix.topLeftCorner(4, 4)).ldlt().solve(Eigen::VectorXd(n.gradient.head(4)));
-  p.amplitude = {std::complex{c[0], c[1]}, std::complex{c[2], c[3]}};
-  n = normals_of(z, t.rate_Hz, p, relative);
   double damping = 1e-3;
   for (int k = 0; k < 25 && damping < 1e7; ++k) {
     auto damped = n.matrix;
@@ -170,21 +201,15 @@ inline void describe_pair(const std::vector<const partial_track*>& tracks, pair_
 
 /// Sought from 3e-5 to 0.02.
 [[nodiscard]] inline pair_found find_pair(const std::vector<const partial_track*>& tracks) {
-  pair_found p;
+  const auto gain = [&](double x) { return detail::pair_gain(tracks, x); };
+  detail::likelihood_peak top;
   for (double x = 3e-5; x < 0.02; x *= 1.09)
-    if (const double g = detail::pair_gain(tracks, x); g > p.gain) p.gain = g, p.detuning = x;
-  if (p.gain <= 0) return p;
-  double step = 0.04 * p.detuning;
-  for (int i = 0; i < 24 && step > 1e-5 * p.detuning; ++i) {
-    const double here = p.detuning;
-    for (const double x : {here - step, here + step})
-      if (const double g = detail::pair_gain(tracks, x); g > p.gain) p.gain = g, p.detuning = x;
-    if (p.detuning == here) step /= 2;
-  }
-  double h = 1e-4 * p.detuning;
-  while (h < 0.3 * p.detuning && p.gain - detail::pair_gain(tracks, p.detuning + h) < 0.5) h *= 2;
-  const double curve = (detail::pair_gain(tracks, p.detuning + h) - 2 * p.gain + detail::pair_gain(tracks, p.detuning - h)) / (h * h);
-  p.sd = curve < 0 ? 1 / std::sqrt(-curve) : p.detuning;
+    if (const double g = gain(x); g > top.gain) top = {x, g};
+  if (top.gain <= 0) return {};
+  top = detail::climbed(gain, top, 0.04 * top.at, 1e-5);
+  pair_found p{top.at, 0, top.gain};
+  p.sd = detail::sd_at(gain, top, 1e-4 * top.at, 0.3 * top.at);
+  if (!std::isfinite(p.sd)) p.sd = p.detuning;
   detail::describe_pair(tracks, p);
   return p;
 }

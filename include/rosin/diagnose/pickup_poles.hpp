@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 namespace rosin {
 
@@ -30,26 +31,24 @@ struct pickup_law {
 
 namespace detail {
 
-inline constexpr double pickup_pi = 3.14159265358979323846;
-
 /// Decay rate by the law of losses alone, 1/s.
 inline double pickup_loss_rate(const pickup_law& l, double f) {
-  return pickup_pi * f * (l.inverse_q + l.internal_s * f + l.air_sqrt_Hz / std::sqrt(f)) + 2 * l.fundamental_Hz * l.conductance;
+  return std::numbers::pi * f * (l.inverse_q + l.internal_s * f + l.air_sqrt_Hz / std::sqrt(f)) + 2 * l.fundamental_Hz * l.conductance;
 }
 
 /// Left side minus right side of the equation above. A lossy string's wave number goes with s + loss, its loads feel s.
 inline std::complex<double> pickup_characteristic(const pickup_law& l, std::complex<double> v, double loss_per_s) {
   constexpr std::complex<double> i{0, 1};
   const auto stiff = 1.0 + l.inharmonicity * v * v, root = std::sqrt(stiff), slope = (1.0 + 2.0 * l.inharmonicity * v * v) / root;
-  const auto all = pickup_pi * v, w = v * root + i * loss_per_s / (2 * pickup_pi * l.fundamental_Hz), lossy = w / (v * root);
+  const auto all = std::numbers::pi * v, w = v * root + i * loss_per_s / (2 * std::numbers::pi * l.fundamental_Hz), lossy = w / (v * root);
   auto value = std::sin(all);
   if (l.support_lightness != 0) {
     const auto x = w * l.fundamental_Hz / l.support_Hz;  // of the support's resonance
-    const auto zy = l.support_lightness * l.fundamental_Hz / (pickup_pi * l.support_Hz) * i * x / (1.0 - x * x + i * x / l.support_q);
+    const auto zy = l.support_lightness * l.fundamental_Hz / (std::numbers::pi * l.support_Hz) * i * x / (1.0 - x * x + i * x / l.support_q);
     value -= i * zy / lossy * stiff / slope * std::cos(all);
   }
   const auto load = [&](std::complex<double> z, double x) { value += i * z * lossy / slope * std::sin(all * x) * std::sin(all * (1 - x)); };
-  if (l.bead_mass != 0) load(i * pickup_pi * w * l.bead_mass, l.bead_position);
+  if (l.bead_mass != 0) load(i * std::numbers::pi * w * l.bead_mass, l.bead_position);
   if (l.finger_resistance != 0) load(l.finger_resistance, l.finger_position);
   return value;
 }
@@ -71,7 +70,7 @@ inline std::complex<double> pickup_characteristic(const pickup_law& l, std::comp
       if (std::abs(step) < 1e-12) break;
     }
   const auto f = pitch(v);
-  return std::complex<double>{0, 2 * detail::pickup_pi} * f - detail::pickup_loss_rate(l, std::abs(f.real()));
+  return std::complex<double>{0, 2 * std::numbers::pi} * f - detail::pickup_loss_rate(l, std::abs(f.real()));
 }
 
 }  // namespace rosin

@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,7 +41,12 @@ struct pickup_ringing {
   double fundamental_Hz = 0, tolerance_Hz = 0, start_s = 0, stop_s = 0;
   std::vector<partial_track> tracks;  ///< one line each
   std::vector<double> power;          ///< of each at the start, as slope of the string where the sensor is known
-  double recorded_power = 0;          ///< of all partials at the start, in the channel's unit
+
+  [[nodiscard]] double strength() const {
+    double sum = 0;
+    for (const double p : power) sum += p;
+    return sum;
+  }
 };
 
 /// Real numbers in the band of a track.
@@ -60,16 +66,8 @@ inline double power_at_start(const partial_track& t) {
 /// Slopes of the string against what the sensor shows of mode n; near a node nothing is known, and little is made of it.
 inline double slope_weight(pickup_kind kind, double position, int n) {
   if (kind == pickup_kind::force || kind == pickup_kind::sound || !(position > 0)) return 1;
-  const double shape = std::pow(std::sin(3.14159265358979323846 * n * position), 2);
+  const double shape = std::pow(std::sin(std::numbers::pi * n * position), 2);
   return (kind == pickup_kind::velocity ? 1.0 : double(n) * n) / std::max(shape, 0.1);
-}
-
-inline void weigh(pickup_ringing& r, const pickup_signal& s) {
-  for (const auto& t : r.tracks) {
-    const double p = power_at_start(t);
-    r.recorded_power += p;
-    r.power.push_back(p * slope_weight(s.kind, s.position, t.number));
-  }
 }
 
 }  // namespace detail
@@ -95,7 +93,7 @@ inline void weigh(pickup_ringing& r, const pickup_signal& s) {
   const double begin = s.from_s >= 0 ? s.from_s : detail::sound_begins_s(all.first(static_cast<std::size_t>(end * s.rate_Hz)), s.rate_Hz) + std::max(options.skip_s, bank.settling_s());
   const double stop = end - bank.settling_s() / 2;
   if (!(stop - begin > least)) return brief;
-  pickup_ringing r{s.take, s.channel, 0, 0, begin, stop, {}, {}, 0};
+  pickup_ringing r{s.take, s.channel, 0, 0, begin, stop, {}, {}};
   const double seen = std::min(stop - begin, std::max(1.0, 50 / nominal_Hz));
   const auto found = find_partials(all.subspan(static_cast<std::size_t>(begin * s.rate_Hz), static_cast<std::size_t>(seen * s.rate_Hz)), s.rate_Hz,
                                    nominal_Hz, options.search_range, options.partials_at_most);
@@ -104,7 +102,7 @@ inline void weigh(pickup_ringing& r, const pickup_signal& s) {
   r.tracks = detail::pickup_tracks(bank, found, begin, stop, options.highest_Hz, r.tolerance_Hz);
   for (auto& t : r.tracks) t.fit = fit_one_line(t.samples, t.rate_Hz, t.fit.model.centre_Hz, 1.5 * r.tolerance_Hz);
   if (r.tracks.size() < 4) return failure{"partials: fewer than four stand out near multiples of the nominal fundamental"};
-  detail::weigh(r, s);
+  for (const auto& t : r.tracks) r.power.push_back(detail::power_at_start(t) * detail::slope_weight(s.kind, s.position, t.number));
   return r;
 }
 
