@@ -74,21 +74,32 @@ inline std::vector<pickup_law> support_places(double low_Hz, double high_Hz) {
   return {{"fundamental_Hz", &pickup_law::fundamental_Hz, 0.5 * fundamental_Hz, 2 * fundamental_Hz, true}, {"inverse_quality", &pickup_law::inverse_q, 0, 0.2}};
 }
 
-/// The law with one effect more, from the three likeliest places on.
-[[nodiscard]] inline fitted_law with_effect(const line_table& table, const fitted_law& base, const law_effect& e) {
+namespace detail {
+
+/// The law with as much of an effect at each of its places as the score there calls for, the best gain first.
+inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_table& table, const fitted_law& base, const law_effect& e) {
   std::vector<std::pair<double, pickup_law>> starts;
-  const detail::law_problem problem(table, base.parameters, base.in_proportion);
+  const law_problem problem(table, base.parameters, base.in_proportion);
   const Eigen::VectorXd plain = problem.predicted(base.law);
+  const auto score = problem.score_at(base.law);
   for (const auto& place : e.places) {
     pickup_law at = base.law;
     for (const auto& p : e.parameters) at.*p.member = place.*p.member;
     at.*e.strength = e.little;
-    const auto [gain, size] = problem.score(base, (problem.predicted(at) - plain) / e.little);
+    const auto [gain, size] = score((problem.predicted(at) - plain) / e.little);
     if (!(size > 0)) continue;
     at.*e.strength = size;
     starts.emplace_back(gain, at);
   }
   std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  return starts;
+}
+
+}  // namespace detail
+
+/// The law with one effect more, from the three likeliest places on.
+[[nodiscard]] inline fitted_law with_effect(const line_table& table, const fitted_law& base, const law_effect& e) {
+  const auto starts = detail::likeliest_places(table, base, e);
   std::vector<law_parameter> parameters = base.parameters;
   parameters.insert(parameters.end(), e.parameters.begin(), e.parameters.end());
   fitted_law best = base;

@@ -14,7 +14,7 @@
 #include <rosin/diagnose/pickup_poles.hpp>
 #include <rosin/diagnose/pickup_table.hpp>
 
-#include <functional>
+#include <array>
 
 namespace rosin {
 
@@ -43,6 +43,43 @@ struct fitted_law {
 };
 
 namespace detail {
+
+inline constexpr huber_limits law_limits{1.5, 1e300};
+
+/// Frequencies, then decays.
+inline Eigen::VectorXd predicted_lines(const line_table& table, const pickup_law& law) {
+  const auto n = static_cast<Eigen::Index>(table.lines.size());
+  Eigen::VectorXd y(2 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto s = pickup_pole(law, table.lines[static_cast<std::size_t>(i)].number);
+    y[i] = s.imag() / full_turn, y[n + i] = -s.real();
+  }
+  return y;
+}
+
+/// What a prediction leaves of frequencies and of decays, with their errors and the shape of their scatter.
+inline std::array<robust_data, 2> left_by_law(const line_table& table, const Eigen::VectorXd& predicted, bool in_proportion) {
+  const auto n = static_cast<Eigen::Index>(table.lines.size());
+  std::array<robust_data, 2> left;
+  for (auto& d : left) d.y.resize(n), d.variance.resize(n), d.shape.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& l = table.lines[static_cast<std::size_t>(i)];
+    left[0].y[i] = l.frequency_Hz - predicted[i], left[1].y[i] = l.decay_per_s - predicted[n + i];
+    left[0].variance[i] = std::pow(l.frequency_sd, 2), left[1].variance[i] = std::pow(l.decay_sd, 2);
+    left[0].shape[i] = in_proportion ? l.number : 1.0, left[1].shape[i] = std::max(predicted[n + i], 0.2 * l.decay_per_s);
+  }
+  return left;
+}
+
+/// ln L but for a constant: squares up to the bend, straight beyond.
+inline double robust_log_likelihood(const Eigen::VectorXd& left, const Eigen::VectorXd& sigma) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < left.size(); ++i) {
+    const double u = std::abs(left[i]) / sigma[i];
+    sum -= std::log(sigma[i]) + (u <= law_limits.bend ? u * u / 2 : law_limits.bend * (u - law_limits.bend / 2));
+  }
+  return sum;
+}
 
 class law_problem {
 public:
@@ -73,26 +110,21 @@ public:
     return best;
   }
 
-  /// By how much the weighted squares would fall, half of it, if this derivative of (f, a) joined the parameters at this law; and its best size.
-  [[nodiscard]] std::pair<double, double> score(const fitted_law& at, const Eigen::VectorXd& column) const {
-    const auto state = look(at.law);
-    const Eigen::VectorXd root = state.weight.cwiseSqrt();
-    const Eigen::MatrixXd j = jacobian(at.law).array().colwise() * root.array();
+  /// Asks of a derivative of (f, a): by how much would the weighted squares fall, half of it, if it joined the parameters at this law, and
+  /// what is its best size?
+  [[nodiscard]] auto score_at(const pickup_law& l) const {
+    const auto state = look(l);
+    const Eigen::VectorXd root = state.weight.cwiseSqrt(), r = state.residual.cwiseProduct(root);
+    const Eigen::MatrixXd j = jacobian(l).array().colwise() * root.array();
     const auto qr = j.colPivHouseholderQr();
-    const Eigen::VectorXd c = column.cwiseProduct(root), r = state.residual.cwiseProduct(root);
-    const Eigen::VectorXd clean = c - j * qr.solve(c), rest = r - j * qr.solve(r);
-    const double size = clean.dot(rest) / std::max(clean.squaredNorm(), 1e-300);
-    return {0.5 * size * clean.dot(rest), size};
+    const Eigen::VectorXd rest = r - j * qr.solve(r);
+    return [root, j, qr, rest](const Eigen::VectorXd& column) {
+      const Eigen::VectorXd c = column.cwiseProduct(root), clean = c - j * qr.solve(c);
+      const double size = clean.dot(rest) / std::max(clean.squaredNorm(), 1e-300);
+      return std::pair{0.5 * size * clean.dot(rest), size};
+    };
   }
-  /// Frequencies, then decays.
-  [[nodiscard]] Eigen::VectorXd predicted(const pickup_law& l) const {
-    Eigen::VectorXd y(2 * rows_);
-    for (Eigen::Index i = 0; i < rows_; ++i) {
-      const auto s = pickup_pole(l, table_.lines[static_cast<std::size_t>(i)].number);
-      y[i] = s.imag() / full_turn, y[rows_ + i] = -s.real();
-    }
-    return y;
-  }
+  [[nodiscard]] Eigen::VectorXd predicted(const pickup_law& l) const { return predicted_lines(table_, l); }
 
 private:
   struct view {
@@ -100,29 +132,17 @@ private:
     double scatter_Hz = 0, scatter_decay = 0, log_likelihood = 0;
   };
   [[nodiscard]] view look(const pickup_law& l) const {
-    const huber_limits limits{1.5, 1e300};
-    const Eigen::VectorXd y = predicted(l);
+    const auto left = left_by_law(table_, predicted(l), proportion_);
     view v{Eigen::VectorXd(2 * rows_), Eigen::VectorXd(2 * rows_)};
-    std::array<robust_data, 2> data;
-    for (auto& d : data) d.y.resize(rows_), d.variance.resize(rows_), d.shape.resize(rows_);
-    for (Eigen::Index i = 0; i < rows_; ++i) {
-      const auto& line = table_.lines[static_cast<std::size_t>(i)];
-      data[0].variance[i] = std::pow(line.frequency_sd, 2), data[1].variance[i] = std::pow(line.decay_sd, 2);
-      data[0].shape[i] = proportion_ ? line.number : 1.0, data[1].shape[i] = std::max(y[rows_ + i], 0.2 * line.decay_per_s);
-      v.residual[i] = line.frequency_Hz - y[i], v.residual[rows_ + i] = line.decay_per_s - y[rows_ + i];
-    }
-    const auto p = static_cast<Eigen::Index>(parameters_.size());
+    const auto half = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(parameters_.size()) / 2);
     for (Eigen::Index b = 0; b < 2; ++b) {
-      const auto& d = data[static_cast<std::size_t>(b)];
-      const Eigen::VectorXd r = v.residual.segment(b * rows_, rows_);
+      const auto& d = left[static_cast<std::size_t>(b)];
       double& scatter = b == 0 ? v.scatter_Hz : v.scatter_decay;
-      scatter = scatter_of(d, r, std::max<Eigen::Index>(1, p / 2), limits);
+      scatter = scatter_of(d, d.y, half, law_limits);
       const Eigen::VectorXd sigma = spread_of(d, scatter);
-      for (Eigen::Index i = 0; i < rows_; ++i) {
-        const double u = std::abs(r[i]) / sigma[i];
-        v.weight[b * rows_ + i] = limits.weight(u) / (sigma[i] * sigma[i]);
-        v.log_likelihood -= std::log(sigma[i]) + (u <= limits.bend ? u * u / 2 : limits.bend * (u - limits.bend / 2));
-      }
+      v.residual.segment(b * rows_, rows_) = d.y;
+      for (Eigen::Index i = 0; i < rows_; ++i) v.weight[b * rows_ + i] = law_limits.weight(std::abs(d.y[i]) / sigma[i]) / (sigma[i] * sigma[i]);
+      v.log_likelihood += robust_log_likelihood(d.y, sigma);
     }
     return v;
   }
@@ -179,28 +199,11 @@ private:
 /// themselves have about it.
 [[nodiscard]] inline double predicted_log_likelihood(const line_table& table, const fitted_law& fit) {
   const auto n = static_cast<Eigen::Index>(table.lines.size());
-  std::array<robust_data, 2> data;
-  for (auto& d : data) d.y.resize(n), d.variance.resize(n), d.shape.resize(n);
-  Eigen::VectorXd off(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto& l = table.lines[static_cast<std::size_t>(i)];
-    const auto s = pickup_pole(fit.law, l.number);
-    off[i] = std::log(l.frequency_Hz * detail::full_turn / s.imag());
-    data[0].y[i] = s.imag() / detail::full_turn, data[1].y[i] = l.decay_per_s + s.real();
-    data[0].variance[i] = std::pow(l.frequency_sd, 2), data[1].variance[i] = std::pow(l.decay_sd, 2);
-    data[0].shape[i] = fit.in_proportion ? l.number : 1.0, data[1].shape[i] = std::max(-s.real(), 0.2 * l.decay_per_s);
-  }
-  const double pitch = std::exp(detail::median_of(off));
-  for (Eigen::Index i = 0; i < n; ++i) data[0].y[i] = table.lines[static_cast<std::size_t>(i)].frequency_Hz - pitch * data[0].y[i];
-  const detail::huber_limits limits{1.5, 1e300};
+  Eigen::VectorXd y = detail::predicted_lines(table, fit.law), off(n);
+  for (Eigen::Index i = 0; i < n; ++i) off[i] = std::log(table.lines[static_cast<std::size_t>(i)].frequency_Hz / y[i]);
+  y.head(n) *= std::exp(detail::median_of(off));
   double sum = 0;
-  for (const auto& d : data) {
-    const Eigen::VectorXd sigma = detail::spread_of(d, detail::scatter_of(d, d.y, 1, limits));
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double u = std::abs(d.y[i]) / sigma[i];
-      sum -= std::log(sigma[i]) + (u <= limits.bend ? u * u / 2 : limits.bend * (u - limits.bend / 2));
-    }
-  }
+  for (const auto& d : detail::left_by_law(table, y, fit.in_proportion)) sum += detail::robust_log_likelihood(d.y, detail::spread_of(d, detail::scatter_of(d, d.y, 1, detail::law_limits)));
   return sum;
 }
 
