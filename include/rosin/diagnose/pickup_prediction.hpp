@@ -27,13 +27,11 @@ struct judged_stretch {
   double rate_Hz = 0, start_s = 0;
 };
 
-namespace detail {
-inline double power_of(std::span<const double> x) {
+[[nodiscard]] inline double rms_level(std::span<const double> x) {
   double sum = 0;
   for (const double v : x) sum += v * v;
-  return x.empty() ? 0.0 : sum / static_cast<double>(x.size());
+  return x.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(x.size()));
 }
-}  // namespace detail
 
 [[nodiscard]] inline judged_stretch stretch_of(const pickup_signal& s, double start_s, double stop_s) {
   const auto from = std::min(static_cast<std::size_t>(start_s * s.rate_Hz), s.values.size());
@@ -49,12 +47,12 @@ inline double power_of(std::span<const double> x) {
 [[nodiscard]] inline std::pair<pickup_signal, pickup_signal> halves_of(const pickup_signal& s, double nominal_Hz) {
   const auto block = std::max<std::size_t>(1, static_cast<std::size_t>(0.05 * s.rate_Hz));
   const double begin = detail::sound_begins_s(s.values, s.rate_Hz) + 0.05 + 2 / std::min(64.0, 0.45 * nominal_Hz);
-  std::vector<double> power;
-  for (std::size_t j = 0; j + block <= s.values.size(); j += block) power.push_back(detail::power_of(std::span<const double>{s.values}.subspan(j, block)));
-  std::vector<double> sorted = power;
+  std::vector<double> level;
+  for (std::size_t j = 0; j + block <= s.values.size(); j += block) level.push_back(rms_level(std::span<const double>{s.values}.subspan(j, block)));
+  std::vector<double> sorted = level;
   std::sort(sorted.begin(), sorted.end());
-  std::size_t last = power.size();
-  while (last > 1 && power[last - 1] < 3 * sorted[sorted.size() / 10]) --last;
+  std::size_t last = level.size();
+  while (last > 1 && level[last - 1] < std::sqrt(3.0) * sorted[sorted.size() / 10]) --last;
   const double end = std::min(static_cast<double>(last * block) / s.rate_Hz, begin + 4), whole = static_cast<double>(s.values.size()) / s.rate_Hz;
   const double middle = 0.5 * (begin + (end > begin + 0.6 ? end : std::min(whole, begin + 4)));
   std::pair<pickup_signal, pickup_signal> out{s, s};
@@ -62,8 +60,6 @@ inline double power_of(std::span<const double> x) {
   out.second.to_s = std::min(whole, 2 * middle - begin);
   return out;
 }
-
-[[nodiscard]] inline double rms_level(std::span<const double> x) { return std::sqrt(detail::power_of(x)); }
 
 namespace detail {
 
@@ -112,6 +108,14 @@ private:
   std::vector<coarse_path> paths_;
 };
 
+/// Of the lower half of X^T X and of X^T x; lines that are alike share what there is.
+inline Eigen::VectorXd amplitudes_by(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right) {
+  const Eigen::VectorXd size = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = size.asDiagonal() * Eigen::MatrixXd(gram.selfadjointView<Eigen::Lower>()) * size.asDiagonal();
+  scaled.diagonal().array() += 1e-10;
+  return size.cwiseProduct(scaled.ldlt().solve(size.cwiseProduct(right)));
+}
+
 }  // namespace detail
 
 /// What these lines leave of it.
@@ -132,10 +136,7 @@ private:
     gram.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
     right += part.transpose() * x;
   });
-  const Eigen::VectorXd size = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = size.asDiagonal() * Eigen::MatrixXd(gram.selfadjointView<Eigen::Lower>()) * size.asDiagonal();
-  scaled.diagonal().array() += 1e-10;
-  const Eigen::VectorXd amplitude = size.cwiseProduct(scaled.ldlt().solve(size.cwiseProduct(right)));
+  const Eigen::VectorXd amplitude = detail::amplitudes_by(gram, right);
   std::vector<double> left(s.x.size());
   over([&](std::size_t from, const auto& x) {
     const Eigen::VectorXd r = x - part * amplitude;

@@ -54,16 +54,14 @@ inline std::vector<const partial_track*> clearest_of(const std::vector<pickup_ri
 
 inline structure_hypothesis with_glide(const std::vector<pickup_ringing>& all, const structure_question& ask, const structure_hypothesis& base) {
   structure_hypothesis h = base;
-  h.glides = true;
-  bool any = false;
+  h.glides = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
     glide_found g = find_glide(all[i], ask.power_known[i], base.paired ? base.pair.detuning : 0);
     const double worth = g.gain - std::log(static_cast<double>(all[i].tracks.size()) * 100);
     if (!(g.relative > 0) || !(worth > 0) || g.agreeing < agreement || !(g.relative > 3 * g.sd)) g.relative = 0, g.sd = 0, g.gain = 0;
-    else h.evidence += worth, any = true;
+    else h.evidence += worth, h.glides = true;
     h.glide.push_back(g);
   }
-  h.glides = any;
   return h;
 }
 
