@@ -32,14 +32,12 @@ public:
     prepare_held();
     find_law();
     find_stray_lines();
-    detail::pickup_namer{d_, ask_}.name_all();
+    pickup_namer{d_, ask_}.name_all();
     judge();
     return std::move(d_);
   }
 
 private:
-  [[nodiscard]] bool asked(const std::string& name) const { return !contains(ask_.declared, name) && !contains(ask_.without, name); }
-
   void hear(const std::vector<pickup_signal>& signals, std::vector<pickup_ringing>& out, std::vector<std::size_t>* which) {
     for (std::size_t i = 0; i < signals.size(); ++i) {
       auto r = listen(signals[i], ask_.fundamental_Hz);
@@ -50,7 +48,7 @@ private:
   [[nodiscard]] static bool power_known(const pickup_signal& s) { return s.kind == pickup_kind::force || (s.kind != pickup_kind::sound && s.position > 0); }
 
   void find_structure() {
-    structure_question q{asked("tension-modulation"), asked("second-polarization"), contains(ask_.declared, "tension-modulation"), contains(ask_.declared, "second-polarization"), {}};
+    structure_question q{ask_.asks_for("tension-modulation"), ask_.asks_for("second-polarization"), ask_.is_declared("tension-modulation"), ask_.is_declared("second-polarization"), {}};
     for (const std::size_t i : d_.heard) q.power_known.push_back(power_known(fitted_[i]));
     d_.structures = structures_of(ringings_, q);
     d_.structure = d_.structures.front();
@@ -58,21 +56,16 @@ private:
     mean_of_several k;
     for (std::size_t i = 0; i < ringings_.size(); ++i)
       if (const auto& g = d_.structure.glide[i]; g.relative > 0) {
-        const double power = strength_of(ringings_[i]);
+        const double power = ringings_[i].strength();
         k.add(g.relative / power, std::hypot(g.sd, 0.01 * g.relative) / power);
       }
     d_.glide_per_power = k.mean(), d_.glide_per_power_sd = std::hypot(k.sd(), 0.05 * k.mean());  // so far off were simulated strings
-  }
-  [[nodiscard]] static double strength_of(const pickup_ringing& r) {
-    double sum = 0;
-    for (const double p : r.power) sum += p;
-    return sum;
   }
   /// The glide that a ringing has by its strength.
   [[nodiscard]] glide_found glide_of(const pickup_ringing& r) const {
     const auto one = std::find_if(d_.structure.glide.begin(), d_.structure.glide.end(), [](const auto& g) { return g.relative > 0; });
     glide_shape shape = one->shape.number.size() > 1 || one->shape.number[0] > 0 ? shape_by_power(r) : one->shape;
-    return {std::move(shape), d_.glide_per_power * strength_of(r), 0, 0, 1};
+    return {std::move(shape), d_.glide_per_power * r.strength(), 0, 0, 1};
   }
   void prepare_held() {
     structure_hypothesis still = d_.structure;
@@ -89,8 +82,8 @@ private:
     pickup_law start{ask_.fundamental_Hz, 0, 1e-3};
     fitted_law declared = fit_law(d_.table, parameters, start);
     for (const auto& e : catalogue)
-      if (contains(ask_.declared, e.name)) declared = with_effect(d_.table, declared, e);
-    std::erase_if(catalogue, [&](const auto& e) { return !asked(e.name); });
+      if (ask_.is_declared(e.name)) declared = with_effect(d_.table, declared, e);
+    std::erase_if(catalogue, [&](const auto& e) { return !ask_.asks_for(e.name); });
     std::vector<std::vector<string_line>> held;
     for (const auto& t : held_tables_) held.push_back(t.lines);
     const line_table together = held.empty() ? line_table{} : combined(held);
@@ -100,36 +93,38 @@ private:
   }
 
   void find_stray_lines() {
-    if (!asked("mains-hum") && !asked("sympathetic-string")) return;
+    if (!ask_.asks_for("mains-hum") && !ask_.asks_for("sympathetic-string")) return;
+    std::vector<stray_lines> each;
+    for (std::size_t i = 0; i < ringings_.size(); ++i) each.push_back(strays_of(fitted_[d_.heard[i]], ringings_[i], glide_in(d_.structure.glide, i)));
+    for (std::size_t i = 0; i < held_ringings_.size(); ++i) each.push_back(strays_of(held_[held_heard_[i]], held_ringings_[i], glide_in(held_glide_, i)));
+    d_.strays = each.front();
+    keep_common(&stray_lines::hum, each);
+    keep_common(&stray_lines::others, each);
+    if (!ask_.asks_for("mains-hum")) d_.strays.hum.clear();
+    if (!ask_.asks_for("sympathetic-string")) d_.strays.others.clear();
+    if (d_.strays.hum.empty()) d_.strays.mains_Hz = 0;
+  }
+  [[nodiscard]] stray_lines strays_of(const pickup_signal& s, const pickup_ringing& r, const glide_found* glide) const {
     const auto& law = d_.law.best.law;
     std::vector<double> own;
     const int highest = d_.table.lines.back().number;
     for (int n = 1; n < highest + 12; ++n)
       for (const double b : {0.0, 0.25, 0.5, 1.0}) own.push_back(partial_frequency(law.fundamental_Hz, b * law.inharmonicity, n));
     for (const auto& l : d_.table.lines) own.push_back(l.frequency_Hz);
-    const double near = std::max(5.0, 0.06 * law.fundamental_Hz);
-    std::vector<stray_lines> each;
-    for (std::size_t i = 0; i < ringings_.size(); ++i)
-      each.push_back(strays_of(fitted_[d_.heard[i]], ringings_[i], d_.structure.glides ? &d_.structure.glide[i] : nullptr, own, near));
-    for (std::size_t i = 0; i < held_ringings_.size(); ++i)
-      each.push_back(strays_of(held_[held_heard_[i]], held_ringings_[i], d_.structure.glides ? &held_glide_[i] : nullptr, own, near));
-    d_.strays = each.front();
-    const auto seen = [&](const stray_line& l, bool hum) {  // in every recording
-      return std::all_of(each.begin() + 1, each.end(), [&](const stray_lines& s) {
-        const auto& lines = hum ? s.hum : s.others;
-        return std::any_of(lines.begin(), lines.end(), [&](const stray_line& m) { return std::abs(m.frequency_Hz - l.frequency_Hz) < std::max(s.resolution_Hz, d_.strays.resolution_Hz); });
-      });
-    };
-    std::erase_if(d_.strays.hum, [&](const auto& l) { return !seen(l, true); });
-    std::erase_if(d_.strays.others, [&](const auto& l) { return !seen(l, false); });
-    if (!asked("mains-hum")) d_.strays.hum.clear();
-    if (!asked("sympathetic-string")) d_.strays.others.clear();
-    if (d_.strays.hum.empty()) d_.strays.mains_Hz = 0;
-  }
-  [[nodiscard]] stray_lines strays_of(const pickup_signal& s, const pickup_ringing& r, const glide_found* glide, const std::vector<double>& own, double near) const {
     const auto stretch = stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + 2));
-    return find_strays(left_by_lines(stretch, by_table(0), glide), s.rate_Hz, own, near, d_.table.lines.back().frequency_Hz);
+    return find_strays(left_by_lines(stretch, by_table(0), glide), s.rate_Hz, own, std::max(5.0, 0.06 * law.fundamental_Hz), d_.table.lines.back().frequency_Hz);
   }
+  /// What not every recording has goes.
+  void keep_common(std::vector<stray_line> stray_lines::*kind, const std::vector<stray_lines>& each) {
+    std::erase_if(d_.strays.*kind, [&](const stray_line& l) {
+      return std::any_of(each.begin() + 1, each.end(), [&](const stray_lines& s) {
+        const double reach = std::max(s.resolution_Hz, d_.strays.resolution_Hz);
+        return std::none_of((s.*kind).begin(), (s.*kind).end(), [&](const stray_line& m) { return std::abs(m.frequency_Hz - l.frequency_Hz) < reach; });
+      });
+    });
+  }
+  /// Null where nothing glides.
+  [[nodiscard]] const glide_found* glide_in(const std::vector<glide_found>& glide, std::size_t i) const { return d_.structure.glides ? &glide[i] : nullptr; }
 
   [[nodiscard]] std::vector<predicted_line> by_law(const pickup_law& law, double offset) const {
     std::vector<predicted_line> out;
@@ -139,11 +134,12 @@ private:
     }
     return out;
   }
-  [[nodiscard]] std::vector<predicted_line> by_table(double offset) const {
+  [[nodiscard]] static std::vector<predicted_line> lines_in(const line_table& table, double offset) {
     std::vector<predicted_line> out;
-    for (const auto& l : d_.table.lines) out.push_back({l.number, {-l.decay_per_s, full_turn * l.frequency_Hz * (1 + offset)}});
-    return doubled(std::move(out));
+    for (const auto& l : table.lines) out.push_back({l.number, {-l.decay_per_s, full_turn * l.frequency_Hz * (1 + offset)}});
+    return out;
   }
+  [[nodiscard]] std::vector<predicted_line> by_table(double offset) const { return doubled(lines_in(d_.table, offset)); }
   /// With the second line of each, as the structure has it.
   [[nodiscard]] std::vector<predicted_line> doubled(std::vector<predicted_line> lines) const {
     const std::size_t count = lines.size();
@@ -165,32 +161,31 @@ private:
   void judge() {
     std::map<int, string_line> reference;
     for (const auto& l : d_.table.lines) reference.emplace(l.number, l);
-    const bool glide_known = contains(ask_.declared, "tension-modulation"), pairs_known = contains(ask_.declared, "second-polarization");
-    double before = 0, after = 0, floor = 0, poles = 0;
-    for (std::size_t i = 0; i < held_ringings_.size(); ++i) {
-      const auto& r = held_ringings_[i];
-      const auto& s = held_[held_heard_[i]];
-      const auto stretch = stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + ask_.longest_s));
-      const glide_found* glide = d_.structure.glides ? &held_glide_[i] : nullptr;
-      const double offset = std::expm1(offset_between(held_tables_[i].lines, reference));
-      judged_ringing j{s.take, s.channel, s.rate_Hz, r.start_s, 0, rms_level(stretch.x), {}, {}, 0};
-      const auto plain = by_law(d_.law.declared.law, offset);
-      j.before = left_by_lines(stretch, pairs_known ? doubled(plain) : plain, glide_known ? glide : nullptr);
-      j.after = left_by_lines(stretch, with_strays(doubled(by_law(d_.law.best.law, offset))), glide);
-      j.own_poles = rms_level(left_by_lines(stretch, with_strays(by_table(offset)), glide));
-      j.noise = std::min(quietest_piece(left_by_lines(stretch, with_strays(doubled(own_lines(i))), glide), s.rate_Hz), rms_level(j.after));
-      const double square = 1 / (j.recorded * j.recorded * static_cast<double>(held_ringings_.size()));
-      before += square * std::pow(rms_level(j.before), 2), after += square * std::pow(rms_level(j.after), 2);
-      floor += square * j.noise * j.noise, poles += square * j.own_poles * j.own_poles;
-      d_.judged.push_back(std::move(j));
-    }
-    d_.before = std::sqrt(before), d_.after = std::sqrt(after), d_.floor = std::sqrt(floor), d_.own_poles = std::sqrt(poles);
+    for (std::size_t i = 0; i < held_ringings_.size(); ++i) d_.judged.push_back(judged(i, std::expm1(offset_between(held_tables_[i].lines, reference))));
+    const auto overall = [&](const auto& level) {
+      double sum = 0;
+      for (const auto& j : d_.judged) sum += std::pow(level(j) / j.recorded, 2) / static_cast<double>(d_.judged.size());
+      return std::sqrt(sum);
+    };
+    d_.before = overall([](const auto& j) { return rms_level(j.before); });
+    d_.after = overall([](const auto& j) { return rms_level(j.after); });
+    d_.floor = overall([](const auto& j) { return j.noise; });
+    d_.own_poles = overall([](const auto& j) { return j.own_poles; });
     decide();
   }
-  [[nodiscard]] std::vector<predicted_line> own_lines(std::size_t i) const {
-    std::vector<predicted_line> out;
-    for (const auto& l : held_tables_[i].lines) out.push_back({l.number, {-l.decay_per_s, full_turn * l.frequency_Hz}});
-    return out;
+  [[nodiscard]] judged_ringing judged(std::size_t i, double offset) const {
+    const auto& r = held_ringings_[i];
+    const auto& s = held_[held_heard_[i]];
+    const auto stretch = stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + ask_.longest_s));
+    const glide_found* glide = glide_in(held_glide_, i);
+    judged_ringing j{s.take, s.channel, s.rate_Hz, r.start_s, 0, rms_level(stretch.x), {}, {}, 0};
+    const auto plain = by_law(d_.law.declared.law, offset);
+    j.before = left_by_lines(stretch, ask_.is_declared("second-polarization") ? doubled(plain) : plain, ask_.is_declared("tension-modulation") ? glide : nullptr);
+    j.after = left_by_lines(stretch, with_strays(doubled(by_law(d_.law.best.law, offset))), glide);
+    j.own_poles = rms_level(left_by_lines(stretch, with_strays(by_table(offset)), glide));
+    const auto by_itself = left_by_lines(stretch, with_strays(doubled(lines_in(held_tables_[i], 0))), glide);
+    j.noise = std::min(quietest_piece(by_itself, s.rate_Hz), rms_level(j.after));
+    return j;
   }
 
   void decide() {

@@ -17,6 +17,10 @@ struct pickup_question {
   std::vector<std::string> declared;  ///< effects that the model contains
   std::vector<std::string> without;   ///< effects that the catalogue is not to know
   double longest_s = 1.5;             ///< of a take that is judged
+
+  [[nodiscard]] bool is_declared(const std::string& effect) const { return std::find(declared.begin(), declared.end(), effect) != declared.end(); }
+  /// Whether it may be found.
+  [[nodiscard]] bool asks_for(const std::string& effect) const { return !is_declared(effect) && std::find(without.begin(), without.end(), effect) == without.end(); }
 };
 
 struct found_value {
@@ -59,20 +63,18 @@ struct pickup_diagnosis {
 
 namespace detail {
 
-inline bool contains(const std::vector<std::string>& names, const std::string& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
-
 /// Fills `missing` and `ranking` from structure, law and strays.
 class pickup_namer {
 public:
   pickup_namer(pickup_diagnosis& d, const pickup_question& ask) : d_{d}, ask_{ask} {}
 
   void name_all() {
-    if (d_.structure.glides && asked("tension-modulation")) {
+    if (d_.structure.glides && ask_.asks_for("tension-modulation")) {
       double rise = 0;
       for (const auto& g : d_.structure.glide) rise = std::max(rise, g.relative);
       d_.missing.push_back({"tension-modulation", {{"pitch_rise", rise, rise * d_.glide_per_power_sd / d_.glide_per_power}}, worth_of(true), {}});
     }
-    if ((d_.structure.paired || d_.structure.doubled) && asked("second-polarization")) d_.missing.push_back(polarization());
+    if ((d_.structure.paired || d_.structure.doubled) && ask_.asks_for("second-polarization")) d_.missing.push_back(polarization());
     for (const auto& f : d_.law.found) {
       pickup_finding out{f.effect.name, {}, f.gain, f.alike};
       for (const auto& p : f.effect.parameters) out.values.push_back({p.name, d_.law.best.law.*p.member, d_.law.best.sd_of(p.name)});
@@ -84,7 +86,6 @@ public:
   }
 
 private:
-  [[nodiscard]] bool asked(const std::string& name) const { return !contains(ask_.declared, name) && !contains(ask_.without, name); }
   /// Of the glide or of the pairs, within the structure that was chosen: what the best without it lacks.
   [[nodiscard]] double worth_of(bool glide) const {
     double best = 0;
@@ -126,12 +127,13 @@ private:
       d_.missing.push_back({"sympathetic-string", {{"frequency_Hz", lowest.frequency_Hz, 0.1 * d_.strays.resolution_Hz}, {"amplitude", lowest.amplitude, 0}}, gain, {}});
     }
   }
+  [[nodiscard]] static bool is_stray(const pickup_finding& m) { return m.effect == "mains-hum" || m.effect == "sympathetic-string"; }
   void rank() {
     double all = d_.structure.evidence + d_.law.gain;
     std::vector<std::string> names;
     for (const auto& m : d_.missing) {
       names.push_back(m.effect);
-      if (m.effect == "mains-hum" || m.effect == "sympathetic-string") all += m.gain;
+      if (is_stray(m)) all += m.gain;
     }
     d_.ranking.emplace_back(names, 0.0);
     if (!names.empty()) d_.ranking.emplace_back(std::vector<std::string>{}, -all);
@@ -142,7 +144,7 @@ private:
     for (const auto& h : d_.structures)
       if (h.glides != (h.paired || h.doubled)) add(h.glides ? "tension-modulation" : "second-polarization", h.evidence);
     for (const auto& m : d_.missing)
-      if (m.effect == "mains-hum" || m.effect == "sympathetic-string") add(m.effect, m.gain);
+      if (is_stray(m)) add(m.effect, m.gain);
     std::stable_sort(d_.ranking.begin(), d_.ranking.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   }
 

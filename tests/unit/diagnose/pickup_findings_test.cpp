@@ -23,6 +23,16 @@ TEST_CASE("pickup_namer: strays become hum and strings, and evidence adds up") {
   REQUIRE(d.ranking.size() > 2);
   CHECK(d.ranking.front().first.size() == 3);
   CHECK(d.ranking.front().second == 0);
-  for (const auto& [names, gain] : d.ranking)
-    if (names == std::vector<std::string>{"bending-stiffness"}) CHECK(gain == doctest::Approx(3.0 - 820));
+  const auto stiff = std::find_if(d.ranking.begin(), d.ranking.end(), [](const auto& r) { return r.first == std::vector<std::string>{"bending-stiffness"}; });
+  REQUIRE(stiff != d.ranking.end());
+  CHECK(stiff->second == doctest::Approx(3.0 - 820));
+}
+
+TEST_CASE("pickup_question: what is declared, or is not to be known, is not asked for") {
+  const pickup_question ask{220, {"bending-stiffness"}, {"mains-hum"}};
+  CHECK(ask.is_declared("bending-stiffness"));
+  CHECK_FALSE(ask.is_declared("mains-hum"));
+  CHECK_FALSE(ask.asks_for("bending-stiffness"));
+  CHECK_FALSE(ask.asks_for("mains-hum"));
+  CHECK(ask.asks_for("air-loss"));
 }
