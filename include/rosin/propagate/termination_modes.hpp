@@ -61,11 +61,11 @@ public:
   }
 
   [[nodiscard]] modal_likeness run() {
-    while (all_ > 0 && mismatch() > limits_.tolerance && static_cast<int>(modes_.size()) < limits_.modes) {
+    for (int in_vain = 0; in_vain < 2 && all_ > 0 && mismatch() > limits_.tolerance && static_cast<int>(modes_.size()) < limits_.modes;) {
       const double before = mismatch();
       add();
       polish();
-      if (!(mismatch() < 0.95 * before)) break;
+      in_vain = mismatch() < 0.95 * before ? 0 : in_vain + 1;
     }
     return {{modes_}, mismatch()};
   }
