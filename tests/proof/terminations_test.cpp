@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Force and velocity under the bow of strings whose ends move, from 16-bit recordings with 0.3 mN of noise of a rig that is simulated by
-// component modes (tests/support/moving_end_rig.hpp): three plucks at two places, then a stroke from rest. In per cent of the truth, one
-// common scale taken out, up to 20 kHz: the ends taken for rigid, as declared, and as fitted from the plucks alone, beside the same rig on
-// rigid ends.
+// component modes (tests/support/moving_end_rig.hpp): three plucks at two places, then a stroke from rest. Errors in per cent of the truth, in mN
+// and in mm/s, one common scale taken out, up to 20 kHz: the ends taken for rigid, as declared, and as fitted from the plucks alone, beside the
+// same rig on rigid ends.
 //
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/calibrate/end_fit.hpp>
@@ -27,9 +27,9 @@ const rosin::string_parameters e_string{.length_m = 0.314, .tension_N = 72.5, .f
 
 using end_modes = std::vector<test::end_mode>;
 
-std::vector<rosin::pluck_take> plucks_of(const test::moving_end_rig& rig) {
+std::vector<rosin::pluck_take> plucks_of(const test::moving_end_rig& rig, double place) {
   std::vector<rosin::pluck_take> takes;
-  for (const double at : {position, position, 0.2}) {
+  for (const double at : {place, place, place < 0.25 ? 0.3 : 0.2}) {
     auto take = test::pluck_moving_ends(rig, at, 1, 0.01, 0.35, fine);
     const auto seed = static_cast<unsigned>(10 + 2 * takes.size());
     test::record(take.near_N, noise_N, 2, seed), test::record(take.far_N, noise_N, 2, seed + 1);
@@ -48,17 +48,23 @@ std::vector<double> through_band(const std::vector<double>& x) {
   return y;
 }
 
-/// Per cent of b that a, best scaled, misses; means aside.
-double missed(const std::vector<double>& a, const std::vector<double>& b, std::size_t from = 0, std::size_t to = 1000000000) {
+/// What a, best scaled, misses of b, means aside: rms, in the unit of b, and in per cent of b's.
+struct error {
+  double rms = 0, per_cent = 100;
+};
+
+error missed(const std::vector<double>& a, const std::vector<double>& b, std::size_t from = 0, std::size_t to = 1000000000) {
   double count = 0, sa = 0, sb = 0, aa = 0, bb = 0, ab = 0;
   for (std::size_t i = from; i < std::min({a.size(), b.size(), to}); ++i)
     if (std::isfinite(a[i]) && std::isfinite(b[i])) ++count, sa += a[i], sb += b[i], aa += a[i] * a[i], bb += b[i] * b[i], ab += a[i] * b[i];
   const double va = aa - sa * sa / count, vb = bb - sb * sb / count, c = ab - sa * sb / count;
-  return va > 0 && vb > 0 ? 100 * std::sqrt(std::max(0.0, 1 - c * c / (va * vb))) : 100.0;
+  if (!(va > 0 && vb > 0)) return {};
+  const double share = std::sqrt(std::max(0.0, 1 - c * c / (va * vb)));
+  return {share * std::sqrt(vb / count), 100 * share};
 }
 
 struct errors {
-  double force = 0, velocity = 0;
+  error force, velocity;
 };
 
 using ends = std::array<rosin::modal_termination, 2>;
@@ -79,20 +85,20 @@ struct row {
   std::size_t modes = 0;
 };
 
-test::moving_take stroke_of(const test::moving_end_rig& rig, double duration_s = 0.15) {
-  return test::bow_moving_ends(rig, position, rosin::velocity_curve{rosin::two_exponential_curve<>{}}, {.speed_m_s = 0.2, .normal_force_N = 0.3}, duration_s, fine);
+test::moving_take stroke_of(const test::moving_end_rig& rig, double duration_s, double place) {
+  return test::bow_moving_ends(rig, place, rosin::velocity_curve{rosin::two_exponential_curve<>{}}, {.speed_m_s = 0.2, .normal_force_N = 0.3}, duration_s, fine);
 }
 std::array<std::vector<double>, 2> recording_of(const test::moving_take& take) {
   std::array<std::vector<double>, 2> out{take.near_N, take.far_N};
   test::record(out[0], noise_N, 4, 1), test::record(out[1], noise_N, 4, 2);
   return out;
 }
-rosin::calibration calibrated(const rosin::pluck_fit_result& fit) { return rosin::calibration_from(fit, position, e_string.impedance_Ns_m(), 0.01); }
+rosin::calibration calibrated(const rosin::pluck_fit_result& fit, double place) { return rosin::calibration_from(fit, place, e_string.impedance_Ns_m(), 0.01); }
 
-row run(const std::string& name, const test::moving_end_rig& rig, double stroke_s = 0.15) {
+row run(const std::string& name, const test::moving_end_rig& rig, double stroke_s = 0.15, double place = position) {
   const rosin::pluck_guess guess{.fundamental_Hz = rig.string.fundamental_Hz * 1.001, .inharmonicity = 6.5e-5};
-  const auto takes = plucks_of(rig);
-  const auto stroke = stroke_of(rig, stroke_s);
+  const auto takes = plucks_of(rig, place);
+  const auto stroke = stroke_of(rig, stroke_s, place);
   const auto recorded = recording_of(stroke);
   ends declared;
   rosin::end_options as_declared;
@@ -107,36 +113,37 @@ row run(const std::string& name, const test::moving_end_rig& rig, double stroke_
   }
   row out;
   const auto plain = rosin::fit_plucks(takes, guess);
-  if (plain) out.as_rigid = errors_of(calibrated(*plain), {}, stroke, recorded);
-  else out.as_rigid = {100, 100};
+  if (plain) out.as_rigid = errors_of(calibrated(*plain, place), {}, stroke, recorded);
   const auto known = rosin::fit_ends(takes, guess, {}, as_declared);
   REQUIRE(known);
-  out.declared = errors_of(calibrated(known->plucks), declared, stroke, recorded);
+  out.declared = errors_of(calibrated(known->plucks, place), declared, stroke, recorded);
   const auto found = rosin::fit_ends(takes, guess);
   REQUIRE(found);
   out.modes = found->modes.size();
-  out.fitted = errors_of(calibrated(found->plucks), found->ends, stroke, recorded);
+  out.fitted = errors_of(calibrated(found->plucks, place), found->ends, stroke, recorded);
   const test::moving_end_rig stiff{rig.string, {}};
-  const auto still = rosin::fit_plucks(plucks_of(stiff), guess);
+  const auto still = rosin::fit_plucks(plucks_of(stiff, place), guess);
   REQUIRE(still);
-  const auto stiff_stroke = stroke_of(stiff, stroke_s);
-  out.rigid_rig = errors_of(calibrated(*still), {}, stiff_stroke, recording_of(stiff_stroke));
-  std::printf("%-44s %6.2f %6.2f   %6.2f %6.2f   %6.2f %6.2f (%2zu)   %6.2f %6.2f\n", name.c_str(), out.as_rigid.force, out.as_rigid.velocity, out.declared.force,
-              out.declared.velocity, out.fitted.force, out.fitted.velocity, out.modes, out.rigid_rig.force, out.rigid_rig.velocity);
+  const auto stiff_stroke = stroke_of(stiff, stroke_s, place);
+  out.rigid_rig = errors_of(calibrated(*still, place), {}, stiff_stroke, recording_of(stiff_stroke));
+  std::printf("%-40s", name.c_str());
+  for (const errors* e : {&out.as_rigid, &out.declared, &out.fitted, &out.rigid_rig}) std::printf("  %6.2f %6.2f", e->force.per_cent, e->velocity.per_cent);
+  std::printf("   %.3f %.3f   %.3f %.3f  (%zu)\n", 1e3 * out.fitted.force.rms, 1e3 * out.rigid_rig.force.rms, 1e3 * out.fitted.velocity.rms, 1e3 * out.rigid_rig.velocity.rms, out.modes);
   std::fflush(stdout);
   return out;
 }
 
 void header() {
-  std::printf("per cent of force and velocity               taken as rigid    as declared      fitted (modes)       rigid ends\n");
+  std::printf("per cent of force and velocity             taken as rigid    as declared       fitted       rigid ends    mN: fitted, rigid  mm/s: fitted, rigid  (modes)\n");
 }
 
-/// Measured: force 0.97 to 1.06, velocity 0.95 to 1.42 times the error on rigid ends.
+/// In newtons and metres per second: a bow that plays into a body makes another motion of the string, whose velocity is 0.31 to 0.44 m/s
+/// in these rigs (0.44 on rigid ends), so that the same error is another share of it. Measured: 0.97 to 1.02 times the error on rigid ends.
 void check(const row& r) {
-  CHECK(r.declared.force < 1.3 * r.rigid_rig.force);
-  CHECK(r.declared.velocity < 1.5 * r.rigid_rig.velocity);
-  CHECK(r.fitted.force < 1.3 * r.rigid_rig.force);
-  CHECK(r.fitted.velocity < 1.5 * r.rigid_rig.velocity);
+  for (const errors* e : {&r.declared, &r.fitted}) {
+    CHECK(e->force.rms < 1.1 * r.rigid_rig.force.rms);
+    CHECK(e->velocity.rms < 1.1 * r.rigid_rig.velocity.rms);
+  }
 }
 
 /// Twenty modes, 0.2 to 6 kHz, light about a hill at 2.5 kHz.
@@ -178,5 +185,22 @@ TEST_CASE("(c) both ends move") {
 
 TEST_CASE("a wolf: the string is tuned onto a mode of the body, through its beating") {
   header();
-  check(run("660 Hz, Q 60, 100 g under a 660 Hz string", {e_string, {end_modes{{664, 60, 0.1}}, end_modes{}}}, 0.5));
+  const test::moving_end_rig wolf{e_string, {end_modes{{660, 60, 0.02}}, end_modes{}}};
+  constexpr double duration_s = 0.5, place = 0.15;
+  check(run("660 Hz, Q 60, 20 g under a 660 Hz string", wolf, duration_s, place));
+  std::vector<double> fundamental;  // of the force on the bridge, in windows of 6 ms, once it sounds
+  const auto stroke = stroke_of(wolf, duration_s, place);
+  for (std::size_t begin = 6400, size = 384; begin + size <= stroke.near_N.size(); begin += size) {
+    std::complex<double> sum = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const double turn = 2 * std::numbers::pi * static_cast<double>(i);
+      sum += stroke.near_N[begin + i] * (1 - std::cos(turn / static_cast<double>(size))) * std::polar(2.0 / static_cast<double>(size), -turn * 660 / rate_Hz);
+    }
+    fundamental.push_back(std::abs(sum));
+  }
+  const auto [least, most] = std::minmax_element(fundamental.begin(), fundamental.end());
+  std::printf("the fundamental at the bridge, mN:");
+  for (const double x : fundamental) std::printf(" %.0f", 1e3 * x);
+  std::printf("\n");
+  CHECK(*least < 0.4 * *most);
 }

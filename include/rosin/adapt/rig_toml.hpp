@@ -116,7 +116,6 @@ inline outcome<std::vector<admittance_point>> read_admittance(const std::string&
     if (!std::isfinite(p.frequency_Hz + p.re_m_sN + p.im_m_sN)) return failure{row + "must hold three numbers"};
     if (p.frequency_Hz < 0 || (!out.empty() && p.frequency_Hz <= out.back().frequency_Hz))
       return failure{row + "frequency_Hz must ascend and not be negative"};
-    if (p.re_m_sN < 0) return failure{row + "admittance_re is negative: a termination cannot feed the string"};
     out.push_back(p);
   }
   if (out.size() < 2) return failure{path + ": needs at least two rows"};

@@ -132,7 +132,7 @@ TEST_CASE("an admittance from a file") {
   const std::string head = "frequency_Hz,admittance_re,admittance_im\n";
   CHECK(with(head + "100,0.01,0\n") == "bridge.csv: needs at least two rows");
   CHECK(with(head + "100,0.01,0\n100,0.01,0\n") == "bridge.csv: row 2: frequency_Hz must ascend and not be negative");
-  CHECK(with(head + "100,0.01,0\n200,-0.01,0\n") == "bridge.csv: row 2: admittance_re is negative: a termination cannot feed the string");
+  CHECK(with(head + "100,0.01,0\n200,-0.01,0\n") == "");  // noise: what is made of it, termination_table.hpp decides
   CHECK(with(head + "100,0.01,0\n200,,0\n") == "bridge.csv: row 2: must hold three numbers");
   CHECK(with(head + "100,0.01,0\n200,0.02,-0.5\n") == "");
   const auto r = load();
