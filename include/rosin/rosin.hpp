@@ -143,6 +143,7 @@
 #include <rosin/simulate/modal_stroke.hpp>
 #include <rosin/simulate/modal_take.hpp>
 #include <rosin/simulate/moving_support.hpp>
+#include <rosin/simulate/point_modes.hpp>
 #include <rosin/simulate/port_bank.hpp>
 #include <rosin/simulate/profiled_rod.hpp>
 #include <rosin/simulate/random_rig.hpp>

@@ -71,13 +71,15 @@ public:
     using std::exp;
     if (step_s != step_) set_step(step_s);
     if (normal_N > 0) resize(normal_N);
-    const T r = renewal(slip_m_s), fade = exp(-r * step_s);
-    const memory rod = recall(rod_, r, fade), string = recall(string_, T(0), T(1));
-    const T kb = given_.rod.conduction(), ks = given_.string.conduction(), capacity = given_.layer_capacity_J_m2K() / step_s;
-    const T rise = (capacity * rise_ + power_W / area_ - kb * rod.past - ks * string.past) /
-                   (capacity + swept(slip_m_s) + leak() + kb * rod.now + ks * string.now);
-    remember(rod_, rise, r, fade);
-    remember(string_, rise, T(0), T(1));
+    const T r = renewal(slip_m_s);
+    if (r > 0) set_answers(sliding_, r, exp(-r * step_s));
+    const answers& on_rod = r > 0 ? sliding_ : still_;
+    const memory rod = recall(rod_, on_rod), string = recall(string_, still_);
+    const T capacity = given_.layer_capacity_J_m2K() / step_s;
+    const T rise = (capacity * rise_ + power_W / area_ - rod_conduction_ * rod.past - string_conduction_ * string.past) /
+                   (capacity + swept(slip_m_s) + leak() + rod_conduction_ * rod.now + string_conduction_ * string.now);
+    remember(rod_, rise, on_rod);
+    remember(string_, rise, still_);
     return rise_ = rise;
   }
 
@@ -105,28 +107,27 @@ private:
   struct memory {
     T past = 0, now = 0;
   };
-  /// One exponential's answer, after a step, to a Theta that rose by 1 K, and to renewal against 1 K.
-  struct answer {
-    T decay, rise, renewal;
+  /// Answers of all exponentials, after a step, to a Theta that rose by 1 K (weighted), and to renewal against 1 K (the same).
+  struct answers {
+    kernel decay{}, rise{}, renewal{};
+    T risen = 0, now = 0;  ///< sum of rise, and of rise + renewal
   };
-  [[nodiscard]] answer over_step(std::size_t j, T r, T fade) const noexcept {
-    const T e = decay_[j] * fade, total = rate_[j] + r, held = total > 0 ? (1 - e) / total : step_;
-    return {e, held / step_, held * r};
-  }
-  [[nodiscard]] memory recall(const kernel& state, T r, T fade) const noexcept {
-    memory sum;
+  void set_answers(answers& a, T r, T fade) const noexcept {
     for (std::size_t j = 0; j < states; ++j) {
-      const answer a = over_step(j, r, fade);
-      sum.past += a.decay * state[j] - a.rise * weight_[j] * rise_;
-      sum.now += weight_[j] * (a.rise + a.renewal);
+      const T total = rate_[j] + r, held = total > 0 ? weight_[j] * (1 - decay_[j] * fade) / total : weight_[j] * step_;
+      a.decay[j] = decay_[j] * fade, a.rise[j] = held / step_, a.renewal[j] = held * r;
     }
-    return sum;
+    a.risen = 0, a.now = 0;
+    for (std::size_t j = 0; j < states; ++j) a.risen += a.rise[j], a.now += a.rise[j] + a.renewal[j];
   }
-  void remember(kernel& state, T rise, T r, T fade) const noexcept {
-    for (std::size_t j = 0; j < states; ++j) {
-      const answer a = over_step(j, r, fade);
-      state[j] = a.decay * state[j] + weight_[j] * (a.rise * (rise - rise_) + a.renewal * rise);
-    }
+  [[nodiscard]] memory recall(const kernel& state, const answers& a) const noexcept {
+    static_assert(states % 3 == 0);
+    T one = -a.risen * rise_, two = 0, three = 0;  // so that no sum waits for the one before
+    for (std::size_t j = 0; j < states; j += 3) one += a.decay[j] * state[j], two += a.decay[j + 1] * state[j + 1], three += a.decay[j + 2] * state[j + 2];
+    return {one + two + three, a.now};
+  }
+  void remember(kernel& state, T rise, const answers& a) const noexcept {
+    for (std::size_t j = 0; j < states; ++j) state[j] = a.decay[j] * state[j] + a.rise[j] * (rise - rise_) + a.renewal[j] * rise;
   }
   [[nodiscard]] static T sqrt_(T x) noexcept {
     using std::sqrt;
@@ -136,6 +137,7 @@ private:
     using std::exp;
     step_ = step_s;
     for (std::size_t j = 0; j < states; ++j) decay_[j] = exp(-rate_[j] * step_s);
+    set_answers(still_, T(0), T(1));
   }
   void resize(T normal_N) noexcept {
     if (normal_N == normal_) return;
@@ -150,6 +152,8 @@ private:
 
   contact_heat_parameters<T> given_;
   kernel rate_{}, weight_{}, decay_{}, rod_{}, string_{};
+  answers still_{}, sliding_{};
+  T rod_conduction_ = given_.rod.conduction(), string_conduction_ = given_.string.conduction();
   T step_ = 0, normal_ = 0, area_ = 1, radius_ = 1, rise_ = 0;
 };
 

@@ -112,9 +112,9 @@ inline void set_direct(wave_design& d) {
 inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
   const double first_Hz = rig.torsion.speed_ratio * rig.string.fundamental_Hz;
   const double limit_Hz = std::max(std::min(0.4 / d.kernels.step_s, std::max(d.limits.pass_Hz, 1.5 * rig.torsion.quality * first_Hz)), first_Hz);
-  d.kernels.turn = {torsional_modes(rig, limit_Hz), damping_convention::viscous, {position}, d.kernels.step_s};
+  d.kernels.turn = {torsional_modes(rig, limit_Hz), position, d.kernels.step_s};
   const double stiffness = rig.torsion.impedance_ratio * rig.torsion.speed_ratio * rig.string.tension_N / rig.string.length_m;
-  d.kernels.turn_rest = (position * (1 - position) / stiffness - d.kernels.turn.compliance(0)) / d.kernels.step_s;
+  d.kernels.turn_rest = (position * (1 - position) / stiffness - d.kernels.turn.compliance()) / d.kernels.step_s;
 }
 
 /// The design at one stride; its block is 0 if there is no time for it.
@@ -137,6 +137,8 @@ inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
     set_direct(d);
     const auto far = loop->echo[1 - d.kernels.near].first - d.kernels.fill_ahead();
     d.kernels.block = std::min<std::ptrdiff_t>(std::min<std::ptrdiff_t>(soonest, d.kernels.direct.first), far);
+    const auto block = std::max<std::ptrdiff_t>(d.kernels.block, 1);
+    d.kernels.far_block = std::max(whole_strides(std::min<std::ptrdiff_t>(far, 64), block), block);
   } else d.kernels.block = (soonest - d.kernels.fill_ahead() - (d.kernels.look_ahead() + stride) / stride + 1) * stride;
   return d;
 }

@@ -3,7 +3,7 @@
 //
 // The string in motion: line() says how its surface would move in the coming step under any force, apply() takes the
 // force that the law of friction found. Echoes need time, so all they do is computed for a block of steps at once,
-// as dense FIR sums; only the law and the near part of the string run step by step. Nothing is allocated while it runs.
+// as dense FIR sums (a far end's for longer blocks than a near one's); only the law and the near part of the string run step by step. Nothing is allocated while it runs.
 //
 #pragma once
 
@@ -78,6 +78,12 @@ inline void add_filtered(const wave_taps<T>& kernel, const T* in, T* out, std::p
     for (std::ptrdiff_t k = 0; k < taps; ++k) sum += h[k] * map(x + i - k);
     Eigen::Map<pack>(out + i) = sum;
   }
+  using half = Eigen::Array<T, width / 2, 1>;
+  for (; i + width / 2 <= count; i += width / 2) {
+    half sum = Eigen::Map<const half>(out + i);
+    for (std::ptrdiff_t k = 0; k < taps; ++k) sum += h[k] * Eigen::Map<const half>(x + i - k);
+    Eigen::Map<half>(out + i) = sum;
+  }
   for (; i < count; ++i) out[i] += dot(kernel.backwards.data(), x + i - taps + 1, taps);
 }
 
@@ -101,9 +107,9 @@ class wave_string {
 public:
   explicit wave_string(wave_kernels<T> kernels)
       : k_{std::move(kernels)},
-        wave_ahead_{k_.block / k_.stride + k_.fill_ahead() + std::max(k_.echo[0].first, k_.echo[1].first) + 2},
+        wave_ahead_{k_.block / k_.stride + k_.far_block + k_.fill_ahead() + std::max(k_.echo[0].first, k_.echo[1].first) + 2},
         force_{thin_reach(), k_.block},
-        velocity_{0, k_.block + static_cast<std::ptrdiff_t>(k_.local.size())},
+        velocity_{0, std::max(k_.block, k_.far_block) + static_cast<std::ptrdiff_t>(k_.local.size())},
         echoes_{k_.fill_ahead() + fill_back() + 8, wave_ahead_},
         out_{tape(k_.reach_back()), tape(k_.reach_back())},
         heard_{tape(k_.reach_back()), tape(k_.reach_back())},
@@ -124,21 +130,21 @@ public:
     Eigen::Map<row>(velocity, size) += force_N * Eigen::Map<const row>(k_.local.data(), size);
     const wave_state<T> state{*velocity, turn_velocity() + turn_mobility_ * force_N};
     *force_.at(now_) = force_N;
-    if (turns_) k_.turn.advance({static_cast<double>(force_N)});
+    if (turns_) k_.turn.advance(static_cast<double>(force_N));
     last_force_ = force_N;
     if (++now_ == block_end_) begin_block();
     return state;
   }
 
   /// Waves that have left for side j up to now, as a rigid end would have to hear them to feel the force that the end feels: values n ... waves() - 1 at the waves' rate; the last reach_back() are kept.
-  [[nodiscard]] std::ptrdiff_t waves() const noexcept { return sent_; }
+  [[nodiscard]] std::ptrdiff_t waves() const noexcept { return std::min(sent_[0], sent_[1]); }
   [[nodiscard]] T wave(std::size_t j, std::ptrdiff_t n) const noexcept { return *(k_.ends[j].moves() ? heard_[j] : out_[j]).at(n); }
   [[nodiscard]] const wave_kernels<T>& kernels() const noexcept { return k_; }
 
 private:
   using row = Eigen::Array<T, Eigen::Dynamic, 1>;
 
-  [[nodiscard]] std::ptrdiff_t thin_reach() const noexcept { return k_.block + 2 * k_.stride + 8 + (k_.thin.empty() ? 0 : 2 * k_.thin.last()); }
+  [[nodiscard]] std::ptrdiff_t thin_reach() const noexcept { return k_.block + k_.far_block + 2 * k_.stride + 8 + (k_.thin.empty() ? 0 : 2 * k_.thin.last()); }
   [[nodiscard]] std::ptrdiff_t fill_back() const noexcept {
     std::ptrdiff_t back = 0;
     for (const auto& phase : k_.fill) back = std::max(back, phase.last());
@@ -146,26 +152,52 @@ private:
   }
   [[nodiscard]] wave_tape<T> tape(std::ptrdiff_t past) const { return {past + 2 * wave_ahead_, 2 * wave_ahead_}; }
   [[nodiscard]] T turn_velocity() const noexcept {
-    return turns_ ? static_cast<T>(k_.turn.free().velocity[0]) - k_.turn_rest * last_force_ : T(0);
+    return turns_ ? static_cast<T>(k_.turn.free()) - k_.turn_rest * last_force_ : T(0);
   }
 
   void begin_block() noexcept {
     block_end_ = now_ + k_.block;
     make_room();
-    send();
-    receive();
-    fill_up();
+    if (k_.direct.empty()) {
+      send();
+      receive();
+      fill_up();
+    } else {
+      send(k_.near, now_);
+      if (now_ == far_end_) begin_far_block();
+      detail::add_filtered(k_.direct, std::as_const(out_[k_.near]).at(now_), velocity_.at(now_), k_.block);
+    }
   }
+
+  /// Stride 1: what the near side sends to the far one, its echo, and what that does at the contact.
+  void begin_far_block() noexcept {
+    const std::size_t far = 1 - k_.near;
+    far_end_ = now_ + k_.far_block;
+    receive(k_.near, now_);
+    send(far, now_);
+    receive(far, sent_[far] + k_.echo[far].first);
+    detail::add_filtered(k_.fill.front(), std::as_const(back_[far]).at(now_), velocity_.at(now_), k_.far_block);
+  }
+
+  /// Forces before `end`, which are known, leave for side j, together with what came back from the other.
+  void send(std::size_t j, std::ptrdiff_t end) noexcept {
+    const auto from = std::exchange(sent_[j], end);
+    T* to = out_[j].at(from);
+    const T *force = force_.at(from), *back = back_[1 - j].at(from);
+    for (std::ptrdiff_t i = 0; i < end - from; ++i) to[i] = force[i] + back[i];
+    if (k_.ends[j].moves()) meet(j, to, end - from, from);
+  }
+
 
   void make_room() noexcept {
     const auto waves_end = block_end_ / k_.stride + 2 * wave_ahead_;
     force_.turn(now_, block_end_ + 1);
-    velocity_.turn(now_, block_end_ + static_cast<std::ptrdiff_t>(k_.local.size()) + 1);
+    velocity_.turn(now_, block_end_ + k_.far_block + static_cast<std::ptrdiff_t>(k_.local.size()) + 1);
     echoes_.turn(now_ / k_.stride, waves_end);
     for (std::size_t j = 0; j < 2; ++j) {
-      out_[j].turn(sent_, waves_end);
-      heard_[j].turn(sent_, waves_end);
-      back_[j].turn(sent_, waves_end);
+      out_[j].turn(waves(), waves_end);
+      heard_[j].turn(waves(), waves_end);
+      back_[j].turn(waves(), waves_end);
     }
   }
 
@@ -173,30 +205,30 @@ private:
   void send() noexcept {
     const auto known = now_ - k_.look_ahead();  // forces before `now_` are known
     const auto end = known <= 0 ? 0 : (known - 1) / k_.stride + 1;
-    const auto count = end - sent_;
+    const auto from = sent_[0], count = end - from;
     if (count <= 0) return;
-    T* to[2] = {out_[0].at(sent_), out_[1].at(sent_)};
-    if (k_.thin.empty()) std::copy_n(force_.at(sent_), count, to[0]);
+    T* to[2] = {out_[0].at(from), out_[1].at(from)};
+    if (k_.thin.empty()) std::copy_n(force_.at(from), count, to[0]);
     else {
       std::fill_n(to[0], count, T(0));
-      detail::add_thinned(k_.thin, std::as_const(force_).at(sent_ * k_.stride), k_.stride, to[0], count);
+      detail::add_thinned(k_.thin, std::as_const(force_).at(from * k_.stride), k_.stride, to[0], count);
     }
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       const T force = to[0][i];
-      to[0][i] = force + *back_[1].at(sent_ + i);
-      to[1][i] = force + *back_[0].at(sent_ + i);
+      to[0][i] = force + *back_[1].at(from + i);
+      to[1][i] = force + *back_[0].at(from + i);
     }
     for (std::size_t j = 0; j < 2; ++j)
-      if (k_.ends[j].moves()) meet(j, to[j], count);
-    sent_ = end;
+      if (k_.ends[j].moves()) meet(j, to[j], count, from);
+    sent_ = {end, end};
   }
 
   /// What a moving end makes of the waves that leave for it.
-  void meet(std::size_t j, T* waves, std::ptrdiff_t count) noexcept {
+  void meet(std::size_t j, T* waves, std::ptrdiff_t count, std::ptrdiff_t from) noexcept {
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       const auto [back, heard] = k_.ends[j](static_cast<double>(waves[i]));
       waves[i] = static_cast<T>(back);
-      *heard_[j].at(sent_ + i) = static_cast<T>(heard);
+      *heard_[j].at(from + i) = static_cast<T>(heard);
     }
   }
 
@@ -204,11 +236,11 @@ private:
   void receive() noexcept {
     const auto now_end = (block_end_ - 1) / k_.stride + 1, end = now_end + k_.fill_ahead();
     const std::size_t far = 1 - k_.near;
-    receive(k_.near, k_.direct.empty() ? end : now_end);
-    if (received_[far] < end) receive(far, std::max(end, sent_ + k_.echo[far].first));
+    receive(k_.near, end);
+    if (received_[far] < end) receive(far, std::max(end, sent_[far] + k_.echo[far].first));
     const T *near_back = back_[k_.near].at(summed_), *far_back = back_[far].at(summed_);
     T* sum = echoes_.at(summed_);
-    for (std::ptrdiff_t i = 0; i < end - summed_; ++i) sum[i] = k_.direct.empty() ? near_back[i] + far_back[i] : far_back[i];
+    for (std::ptrdiff_t i = 0; i < end - summed_; ++i) sum[i] = near_back[i] + far_back[i];
     summed_ = std::max(summed_, end);
   }
   void receive(std::size_t j, std::ptrdiff_t end) noexcept {
@@ -220,7 +252,6 @@ private:
   /// From the waves' rate to the contact's.
   void fill_up() noexcept {
     T* velocity = velocity_.at(now_);
-    if (!k_.direct.empty()) detail::add_filtered(k_.direct, std::as_const(out_[k_.near]).at(now_), velocity, k_.block);
     if (k_.stride == 1) return detail::add_filtered(k_.fill.front(), std::as_const(echoes_).at(now_), velocity, k_.block);
     const auto count = k_.block / k_.stride;
     for (std::size_t phase = 0; phase < k_.fill.size(); ++phase) {
@@ -231,12 +262,12 @@ private:
   }
 
   wave_kernels<T> k_;
-  std::ptrdiff_t wave_ahead_ = 0, now_ = 0, block_end_ = 0, sent_ = 0, summed_ = 0;
-  std::array<std::ptrdiff_t, 2> received_{};
+  std::ptrdiff_t wave_ahead_ = 0, now_ = 0, block_end_ = 0, far_end_ = 0, summed_ = 0;
+  std::array<std::ptrdiff_t, 2> sent_{}, received_{};
   wave_tape<T> force_, velocity_, echoes_;
   std::array<wave_tape<T>, 2> out_, heard_, back_;
   T turn_mobility_ = k_.turn_mobility_m_Ns(), mobility_ = k_.mobility_m_Ns(), last_force_ = 0;
-  bool turns_ = k_.turn.mobility(0, 0) > 0;
+  bool turns_ = k_.turn.mobility() > 0;
   std::vector<T> scratch_ = std::vector<T>(static_cast<std::size_t>(k_.block));
 };
 

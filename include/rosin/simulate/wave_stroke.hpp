@@ -123,7 +123,7 @@ template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
   const auto stride = design.kernels.stride;
   const auto samples = static_cast<std::size_t>(std::lround(duration_s * settings.sample_rate_Hz));
   const auto ahead = static_cast<std::size_t>(std::max(0, -std::min(ends[0].first, ends[1].first))) * static_cast<std::size_t>(stride);
-  const auto reach = decimate.reach(), late = static_cast<std::size_t>(design.kernels.look_ahead() + 2 * design.kernels.block);
+  const auto reach = decimate.reach(), late = static_cast<std::size_t>(design.kernels.look_ahead() + 2 * design.kernels.block + design.kernels.far_block);
   const auto steps = (samples - 1) * static_cast<std::size_t>(settings.oversampling) + 1 + reach + std::max(reach, ahead + late);
   detail::wave_record record{steps, steps / static_cast<std::size_t>(stride) + 1};
   modal_take take{.sample_rate_Hz = settings.sample_rate_Hz};
