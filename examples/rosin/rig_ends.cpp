@@ -50,11 +50,12 @@ rosin::modal_termination declared_modes(const rosin::termination& t, double impe
   return out;
 }
 
-/// A table by modes, as far as the string can feel it: from well below its pitch to where the completed table has faded.
+/// A table by modes, as far as the string can feel it: from well below its pitch to where the completed table has faded. Noise in a
+/// measured table is nothing that modes should follow: only where half of it cannot be had is it no admittance of modes.
 rosin::outcome<rosin::modal_termination> modes_of_table(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
   const auto end = completed(rig, t, which, impedance_Ns_m, remarks);
   if (!end) return rosin::failure{end.error()};
-  const auto like = rosin::as_modes(*end, {.from_Hz = rig.string.fundamental_Hz / 8, .to_Hz = 2 * t.admittance.back().frequency_Hz});
+  const auto like = rosin::as_modes(*end, {.from_Hz = rig.string.fundamental_Hz / 8, .to_Hz = 2 * t.admittance.back().frequency_Hz, .refuse = 0.5});
   if (!like) return rosin::failure{place_of(rig, which) + ": " + like.error()};
   remarks.push_back(std::string{"terminations."} + (which == 0 ? "near" : "far") + ": " + t.file + ": by " + std::to_string(like->end.modes.size()) +
                     " modes, whose reflection differs from the table's by " + rosin::detail::figure(100 * like->mismatch, "%.2g") + " % of what moves");

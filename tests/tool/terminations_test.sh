@@ -116,6 +116,16 @@ read -r table_N table_m_s < <("$tool" compare of-table-truth/bow-1.csv made-trut
 holds "$table_N < 0.05"
 holds "$table_m_s < 0.05"
 
+# noise in a file is repaired, and told; what takes no energy at all is refused
+awk -F, 'NR % 40 == 3 { $2 = -$2 / 10 } { print $1 "," $2 "," $3 }' bridge.csv >noisy.csv
+sed 's/^far = { modes.*/far = "noisy.csv"/; s/^duration_s.*/duration_s = 0.01/' rig.toml >noisy.toml
+expect 0 simulate noisy.toml --out noisy
+says "terminations.far: noisy.csv: negative real parts ("
+awk -F, 'NR > 1 { $2 = -$2 } { print $1 "," $2 "," $3 }' bridge.csv >active.csv
+sed 's/^far = { modes.*/far = "active.csv"/' rig.toml >active.toml
+expect 2 simulate active.toml --out refused
+says "active.toml: terminations.far: active.csv: the admittance is not passive"
+
 # what the simulation has no means for
 sed 's/^far = { modes.*/far = "fit"/' rig.toml >fit.toml
 expect 2 simulate fit.toml --out refused
