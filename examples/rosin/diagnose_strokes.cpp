@@ -33,6 +33,37 @@ rosin::bow_motion<double> motion_of(const diagnosed_stroke& s, const rosin::pluc
   return rosin::reconstruct_loaded(scene, s.calibration.at, s.force_N, limits, s.rate_Hz);
 }
 
+/// A take and its calibration, without what the sensors did to it.
+diagnosed_stroke recorded_stroke(const rosin::rig& rig, const rosin::take& take, const rosin::take_signals& read, const rosin::calibration& calibration,
+                                 const rosin::pluck_diagnosis& plucks, const rosin::band& limits) {
+  diagnosed_stroke s;
+  s.name = take.name, s.rate_Hz = read.sample_rate_Hz;
+  s.speed_m_s = take.speed_m_s.value_or(0), s.normal_force_N = take.normal_force_N.value_or(0);
+  s.calibration = calibration;
+  s.recorded_N = {read.near_N(), read.far_N()};
+  rosin::undo_sensors(plucks.data, plucks.best, s.recorded_N, s.rate_Hz, limits.stop_Hz);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const double corner = rig.channel(c == 0 ? "near" : "far")->ac_coupled_Hz.value_or(0);
+    if (corner > 0) rosin::restore_ac_coupled(std::span(s.recorded_N[c]), corner, s.rate_Hz);
+  }
+  s.force_N = rosin::detail::calibrated(s.calibration, s.recorded_N[0], s.recorded_N[1]);
+  return s;
+}
+
+/// What follows from the motion: the mean of its two versions, how sure it is, and how they differ.
+void add_means_and_doubts(diagnosed_stroke& s, const rosin::band& limits) {
+  for (std::size_t i = 0; i < s.motion.force_near_N.size(); ++i) {
+    s.mean_N.push_back(s.motion.force_N(i));
+    s.mean_m_s.push_back(s.motion.velocity_m_s(i));
+  }
+  const auto slopes = rosin::sensitivity<rosin::full_physics>(s.calibration, s.force_N[0], s.force_N[1], limits, s.rate_Hz);
+  const std::array<double, 2> noise{s.calibration.noise_N[0] / s.calibration.gain[0], s.calibration.noise_N[1] / s.calibration.gain[1]};
+  s.sd = rosin::uncertainty<rosin::full_physics>(s.calibration, s.motion, slopes, noise, limits, s.rate_Hz);
+  const auto middle = (s.motion.known.begin + s.motion.known.end) / 2;
+  s.force_sd_N = s.sd.force_sd_N[middle], s.velocity_sd_m_s = s.sd.velocity_sd_m_s[middle];
+  s.delta = rosin::consistency_delta(s.motion.force_near_N, s.motion.force_far_N);
+}
+
 }  // namespace
 
 std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, double tension_drift,
@@ -48,33 +79,15 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
       warnings.push_back(take.name + ": left out " + (position ? "for the error above" : "as its position is unknown"));
       continue;
     }
-    diagnosed_stroke s;
-    s.name = take.name, s.rate_Hz = read->signals.sample_rate_Hz;
-    s.speed_m_s = take.speed_m_s.value_or(0), s.normal_force_N = take.normal_force_N.value_or(0);
-    s.calibration = rosin::at_tension(calibration_with(plucks, *position, values), tension_drift);
-    s.recorded_N = {read->signals.near_N(), read->signals.far_N()};
-    const rosin::band limits = band.value_or(rosin::band{0.30 * s.rate_Hz, 0.45 * s.rate_Hz});
-    rosin::undo_sensors(plucks.data, plucks.best, s.recorded_N, s.rate_Hz, limits.stop_Hz);
-    for (std::size_t c = 0; c < 2; ++c) {
-      const double corner = rig.channel(c == 0 ? "near" : "far")->ac_coupled_Hz.value_or(0);
-      if (corner > 0) rosin::restore_ac_coupled(std::span(s.recorded_N[c]), corner, s.rate_Hz);
-    }
-    s.force_N = rosin::detail::calibrated(s.calibration, s.recorded_N[0], s.recorded_N[1]);
+    const double rate = read->signals.sample_rate_Hz;
+    const rosin::band limits = band.value_or(rosin::band{0.30 * rate, 0.45 * rate});
+    diagnosed_stroke s = recorded_stroke(rig, take, read->signals, rosin::at_tension(calibration_with(plucks, *position, values), tension_drift), plucks, limits);
     s.motion = motion_of(s, scene, limits);
     if (s.motion.known.end <= s.motion.known.begin + 500) {
       warnings.push_back(take.name + ": left out: too short");
       continue;
     }
-    for (std::size_t i = 0; i < s.motion.force_near_N.size(); ++i) {
-      s.mean_N.push_back(0.5 * (s.motion.force_near_N[i] + s.motion.force_far_N[i]));
-      s.mean_m_s.push_back(0.5 * (s.motion.velocity_near_m_s[i] + s.motion.velocity_far_m_s[i]));
-    }
-    const auto slopes = rosin::sensitivity<rosin::full_physics>(s.calibration, s.force_N[0], s.force_N[1], limits, s.rate_Hz);
-    const std::array<double, 2> noise{s.calibration.noise_N[0] / s.calibration.gain[0], s.calibration.noise_N[1] / s.calibration.gain[1]};
-    s.sd = rosin::uncertainty<rosin::full_physics>(s.calibration, s.motion, slopes, noise, limits, s.rate_Hz);
-    const auto middle = (s.motion.known.begin + s.motion.known.end) / 2;
-    s.force_sd_N = s.sd.force_sd_N[middle], s.velocity_sd_m_s = s.sd.velocity_sd_m_s[middle];
-    s.delta = rosin::consistency_delta(s.motion.force_near_N, s.motion.force_far_N);
+    add_means_and_doubts(s, limits);
     out.push_back(std::move(s));
   }
   return out;
