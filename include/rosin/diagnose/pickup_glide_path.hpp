@@ -22,7 +22,6 @@ namespace rosin {
 struct glide_shape {
   std::vector<double> power, rate_per_s;  ///< power adds up to 1
   std::vector<int> number;                ///< of the partial; 0: of none
-  std::string name;
 
   /// Integral over (0, t) for partial m.
   [[nodiscard]] double path_s(int m, double t) const {
@@ -34,7 +33,7 @@ struct glide_shape {
 
 /// As the sensor's place and the decays have it.
 [[nodiscard]] inline glide_shape shape_by_power(const pickup_ringing& r) {
-  glide_shape s{{}, {}, {}, "power of the partials"};
+  glide_shape s;
   const double sum = r.strength();
   for (std::size_t i = 0; i < r.tracks.size(); ++i) {
     s.power.push_back(r.power[i] / sum);
@@ -43,7 +42,7 @@ struct glide_shape {
   }
   return s;
 }
-[[nodiscard]] inline glide_shape shape_by_rate(double rate_per_s) { return {{1}, {rate_per_s}, {0}, "one exponential"}; }
+[[nodiscard]] inline glide_shape shape_by_rate(double rate_per_s) { return {{1}, {rate_per_s}, {0}}; }
 
 /// The track with a glide of that strength taken out: one line is fitted anew.
 [[nodiscard]] inline partial_track without_glide(const partial_track& t, const std::vector<double>& path_s, double relative, double tolerance_Hz) {

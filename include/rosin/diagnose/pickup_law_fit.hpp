@@ -29,8 +29,7 @@ struct law_parameter {
 struct fitted_law {
   pickup_law law;
   std::vector<law_parameter> parameters;
-  Eigen::VectorXd sd;            ///< of the parameters themselves
-  Eigen::MatrixXd covariance;    ///< as they are fitted (logarithms where logarithmic)
+  Eigen::VectorXd sd;  ///< of the parameters themselves
   double log_likelihood = -std::numeric_limits<double>::infinity();
   double scatter_Hz = 0, scatter_decay = 0;  ///< beyond errors; of the first partial where in_proportion; relative
   bool in_proportion = false;
@@ -172,10 +171,9 @@ private:
     const Eigen::MatrixXd j = jacobian(f.law).array().colwise() * v.weight.cwiseSqrt().array();
     const Eigen::VectorXd size = j.colwise().norm().transpose().cwiseMax(1e-300);
     const Eigen::MatrixXd unit = j * size.cwiseInverse().asDiagonal();
-    f.covariance = size.cwiseInverse().asDiagonal() * (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse().eval() * size.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
     const double free = static_cast<double>(2 * rows_) - static_cast<double>(parameters_.size());
-    f.covariance *= free > 2.5 ? free / (free - 2) : 5.0;
-    f.sd = f.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    f.sd = (inverse.diagonal() * (free > 2.5 ? free / (free - 2) : 5.0)).cwiseMax(0.0).cwiseSqrt().cwiseQuotient(size);
     for (std::size_t k = 0; k < parameters_.size(); ++k)
       if (parameters_[k].logarithmic) f.sd[static_cast<Eigen::Index>(k)] *= f.law.*parameters_[k].member;
   }

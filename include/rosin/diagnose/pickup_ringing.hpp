@@ -37,7 +37,6 @@ struct pickup_signal {
 
 /// The partials of a stretch of it.
 struct pickup_ringing {
-  std::string take, channel;
   double fundamental_Hz = 0, tolerance_Hz = 0, start_s = 0, stop_s = 0;
   std::vector<partial_track> tracks;  ///< one line each
   std::vector<double> power;          ///< of each at the start, as slope of the string where the sensor is known
@@ -93,7 +92,7 @@ inline double slope_weight(pickup_kind kind, double position, int n) {
   const double begin = s.from_s >= 0 ? s.from_s : detail::sound_begins_s(all.first(static_cast<std::size_t>(end * s.rate_Hz)), s.rate_Hz) + std::max(options.skip_s, bank.settling_s());
   const double stop = end - bank.settling_s() / 2;
   if (!(stop - begin > least)) return brief;
-  pickup_ringing r{s.take, s.channel, 0, 0, begin, stop, {}, {}};
+  pickup_ringing r{0, 0, begin, stop, {}, {}};
   const double seen = std::min(stop - begin, std::max(1.0, 50 / nominal_Hz));
   const auto found = find_partials(all.subspan(static_cast<std::size_t>(begin * s.rate_Hz), static_cast<std::size_t>(seen * s.rate_Hz)), s.rate_Hz,
                                    nominal_Hz, options.search_range, options.partials_at_most);

@@ -8,7 +8,7 @@
 using namespace rosin;
 
 TEST_CASE("glide_shape: path by hand") {
-  const glide_shape s{{0.75, 0.25}, {2, 6}, {1, 3}, "two"};
+  const glide_shape s{{0.75, 0.25}, {2, 6}, {1, 3}};
   const auto part = [](double p, double k, double t) { return p * (1 - std::exp(-k * t)) / k; };
   CHECK(s.path_s(2, 0.5) == doctest::Approx(part(0.75, 2, 0.5) + part(0.25, 6, 0.5)));
   CHECK(s.path_s(3, 0.5) == doctest::Approx(part(0.75, 2, 0.5) + 1.5 * part(0.25, 6, 0.5)));

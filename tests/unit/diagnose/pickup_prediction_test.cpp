@@ -9,7 +9,7 @@ using namespace rosin;
 
 TEST_CASE("left_by_lines: true poles leave the noise, wrong ones more") {
   const std::complex<double> s{-3, 2 * 3.14159265358979323846 * 441}, wrong{-3, s.imag() + 2};
-  const glide_shape shape{{1}, {5}, {0}, "one"};
+  const glide_shape shape{{1}, {5}, {0}};
   const glide_found glide{shape, 1e-3, 0, 0, 1};
   judged_stretch stretch{{}, 8000, 0};
   gaussian_source normal{3};
