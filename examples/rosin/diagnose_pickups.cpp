@@ -171,7 +171,7 @@ void own_up(const rosin::rig& rig, const rosin::pickup_diagnosis& p, const heard
     d.assumed.emplace_back("the strokes were not examined: a single channel does not tell force and velocity at the contact");
   for (std::size_t i = 0; i < p.table.offset.size(); ++i)
     if (std::abs(p.table.offset[i]) > 0.005)
-      d.warnings.push_back("takes contradict each other: pitches differ by " + figure(100 * p.table.offset[i]) + " %; another tuning or another string");
+      d.warnings.push_back(plucks.fitted[p.heard[i]].take + ": pitch " + figure(100 * p.table.offset[i]) + " % off that of the other takes: another tuning or another string");
   const double off = p.law.best.law.fundamental_Hz / rig.string.fundamental_Hz - 1;
   if (std::abs(off) > 0.02) d.warnings.push_back("pitch: " + figure(100 * off) + " % from fundamental_Hz");
 }
