@@ -55,7 +55,7 @@ rosin::modal_termination declared_modes(const rosin::termination& t, double impe
 rosin::outcome<rosin::modal_termination> modes_of_table(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
   const auto end = completed(rig, t, which, impedance_Ns_m, remarks);
   if (!end) return rosin::failure{end.error()};
-  const auto like = rosin::as_modes(*end, {.from_Hz = rig.string.fundamental_Hz / 8, .to_Hz = 2 * t.admittance.back().frequency_Hz, .refuse = 0.5});
+  const auto like = rosin::as_modes(*end, {.from_Hz = rig.string.fundamental_Hz / 8, .to_Hz = std::min(2 * t.admittance.back().frequency_Hz, 30e3), .refuse = 0.5});
   if (!like) return rosin::failure{place_of(rig, which) + ": " + like.error()};
   remarks.push_back(std::string{"terminations."} + (which == 0 ? "near" : "far") + ": " + t.file + ": by " + std::to_string(like->end.modes.size()) +
                     " modes, whose reflection differs from the table's by " + rosin::detail::figure(100 * like->mismatch, "%.2g") + " % of what moves");

@@ -26,7 +26,7 @@ namespace rosin {
 
 /// Where the modes have to answer as the termination does, how well, and how many they may be.
 struct mode_limits {
-  double from_Hz = 50, to_Hz = 20e3;
+  double from_Hz = 50, to_Hz = 20e3;  ///< modes themselves up to three times as high
   double tolerance = 1e-3;  ///< stop here
   double refuse = 0.1;      ///< fail above
   int modes = 90;
