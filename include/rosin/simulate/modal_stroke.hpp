@@ -103,12 +103,11 @@ void run_steps(stroke_steps& s, modal_take& take, modal_contact& contact, Law& l
                double step_s) {
   std::size_t slipped = 0;
   bool before = false;
-  const bool moves = travels(motion);
   const std::size_t end = pressed_steps(motion, first, s.force.size(), step_s);
   for (std::size_t i = first; i < s.force.size(); ++i) {
     const double t = static_cast<double>(i - first) * step_s;
     const rod_state rod = motion(t);
-    if (moves) {
+    if (travels(motion)) {
       contact.move_to(s.position.emplace_back(place_of(motion, t, 0)));
       s.rest.push_back(contact.left_out());
     }

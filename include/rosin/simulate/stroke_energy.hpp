@@ -1,4 +1,4 @@
-// tier: freestanding
+// tier: hosted
 // SPDX-License-Identifier: MIT
 //
 // Where the work of the rod went in a simulated stroke. In joules, from rest to the end of the take.
