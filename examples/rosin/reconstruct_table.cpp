@@ -117,6 +117,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const take_reconstruct
   if (!r.rod_m_s.empty())
     out.emplace_back("slips", std::to_string(r.slips.size()) + " in all; " + in_digits(r.slips_per_period(), "%.2f") + " a period and " +
                                   in_digits(100 * slipping_fraction(r, part), "%.1f") + " % of the time in the steady part (" + slipping_means(r) + ")");
+  if (r.lifted) out.emplace_back("free decay at the end", decay_text(r));
   for (auto& fact : facts_of(slips_of(r), r)) out.push_back(std::move(fact));
   for (const auto& c : r.comparisons)
     out.emplace_back("channel " + c.channel + " against the result", c.what + ": channel = " + in_digits(c.scale, "%.5g") + " x result, Delta " + in_digits(c.delta, "%.4f") +
@@ -194,6 +195,7 @@ json to_json(const take_reconstruction& r, const provenance& from) {
   out["slips"] = json::array();
   for (const auto& [begin, end] : r.slips) out["slips"].push_back({r.time_s(begin), r.time_s(end)});
   out["loops"] = to_json(slips_of(r));
+  out["free_decay"] = decay_json(r);
   out["comparisons"] = json::array();
   for (const auto& c : r.comparisons)
     out["comparisons"].push_back({{"channel", c.channel}, {"what", c.what}, {"scale", c.scale}, {"delta", c.delta}, {"correlation", c.correlation}});

@@ -213,7 +213,7 @@ void add_torsion(const rosin::rig& rig, take_reconstruction& r) {
 void find_slips(take_reconstruction& r) {
   if (r.rod_m_s.empty()) return;
   bool caught = false, slipping = false;
-  for (std::size_t i = r.known.begin; i < r.known.end; ++i) {
+  for (std::size_t i = r.known.begin; i < std::min(r.known.end, r.lifted.value_or(r.known.end)); ++i) {
     const double rolling = !r.torsion_m_s.empty() && std::isfinite(r.torsion_m_s[i]) ? r.torsion_m_s[i] : 0;
     const double ratio = r.rod_m_s[i] > 0 ? (r.velocity_m_s[i] + rolling) / r.rod_m_s[i] : 0;
     caught = caught || ratio > 0.75;
@@ -290,6 +290,7 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   finish_columns(r);
   add_torsion(rig, r);
   add_rod_and_normal_force(rig, take, read, r);
+  find_free_decay(r);
   find_slips(r);
   add_comparisons(rig, take, read, r);
   estimate_level(rig, r);

@@ -8,6 +8,7 @@
 #include "corrected_model.hpp"
 #include "reconstruct_process.hpp"
 
+#include <rosin/calibrate/free_decay.hpp>
 #include <rosin/condition/ac_coupling.hpp>
 #include <rosin/reconstruct/dc_level.hpp>
 #include <rosin/torsion/torsion_response.hpp>
@@ -46,6 +47,8 @@ struct take_reconstruction {
   bool ac_coupled = false;
   rosin::dc_estimate dc;
   std::string dc_from;                   ///< "thermal-law" or "usual-friction"
+  std::optional<std::size_t> lifted;     ///< sample from which on the bow is off
+  std::optional<rosin::free_decay> decay;  ///< of the string after that
   std::vector<std::pair<std::size_t, std::size_t>> slips;
   std::size_t steady_begin = 0, steady_end = 0;  ///< where the motion is most nearly periodic
   double period_s = 0;
@@ -62,6 +65,12 @@ struct take_reconstruction {
 
 /// The level that AC-coupled sensors lost: by a fitted law of friction where that knows zero, otherwise by what friction usually is.
 void estimate_level(const rosin::rig& rig, take_reconstruction& r);
+
+/// Whether the bow was lifted, and what the string's free decay after that says of pitch and loss.
+void find_free_decay(take_reconstruction& r);
+/// The same in a sentence; how far the pitch is from the plucks', in cents, and how sure that is.
+[[nodiscard]] std::string decay_text(const take_reconstruction& r);
+[[nodiscard]] json decay_json(const take_reconstruction& r);
 
 /// The table of the format "reconstruction", with its comment lines.
 [[nodiscard]] rosin::table table_of(const take_reconstruction& r, const provenance& from);

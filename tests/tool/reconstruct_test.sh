@@ -104,6 +104,27 @@ says "AC coupled sensors; estimated as"
 read -r delta_ac _ < <(differs ac.csv)
 below "Delta, AC coupled" "$delta_ac" 0.03
 
+# a bow that is lifted: the string rings on, at the pitch and with the loss that it was made with
+cat >lifted.toml <<'TOML'
+schema = 1
+string = { length_m = 0.314, tension_N = 72.5, fundamental_Hz = 660, bending_stiffness_Nm2 = 4.7e-5, quality = 800 }
+contact = { position = 0.3 }
+simulate = { rate_Hz = 64000, duration_s = 0.2, seed = 4 }
+model = { physics = ["bending-stiffness"], friction = "velocity-curve" }
+take = [ { name = "pluck-1", kind = "pluck", file = "pluck-1.wav", force_N = 1.0 },
+  { name = "pluck-2", kind = "pluck", file = "pluck-2.wav", force_N = 0.6 },
+  { name = "bow-1", kind = "bow", file = "bow-1.wav", speed_m_s = 0.2, normal_force_N = 0.3, normal_force_profile_N = [[0.06, 0.3], [0.064, 0]] } ]
+[channels]
+near = { index = 0, newtons_per_full_scale = 2 }
+far = { index = 1, newtons_per_full_scale = 2 }
+TOML
+expect 0 simulate lifted.toml --out lifted
+expect 0 reconstruct lifted --take bow-1 --out lifted.csv --json lifted.json
+says "free decay at the end: the bow is off from 0.06" "against the plucks; Q"
+perl -MJSON::PP -e 'local $/; my $d = decode_json(<STDIN>); my $f = $d->{free_decay};
+  exit !(abs($f->{fundamental_Hz} / 660 - 1) < 6e-5 && abs($f->{cents_from_plucks}) < 0.2 && abs(800 * $f->{loss}[0]{inverse_q} - 1) < 0.01
+         && $f->{begin_s} < 0.066 && $d->{slips}[-1][1] <= $f->{begin_s})' <lifted.json || { echo "FAILED: the free decay is not the string that was bowed"; failures=$((failures + 1)); }
+
 # what cannot be done is said
 expect 2 reconstruct rig --take bow-2
 says 'no take "bow-2"; bowed takes: bow-1'

@@ -27,14 +27,14 @@
 namespace rosin {
 
 /// The first sample after which a contact's force stays below a twentieth of its strongest rms, both over a period; none where it does not
-/// end, or there is no force at all.
-[[nodiscard]] inline std::optional<std::size_t> contact_ends(std::span<const double> force_N, double rate_Hz, double fundamental_Hz) {
+/// end, or there is no force at all. `level_known` false: sensors are AC coupled, and only what the force varies by in a period counts.
+[[nodiscard]] inline std::optional<std::size_t> contact_ends(std::span<const double> force_N, double rate_Hz, double fundamental_Hz, bool level_known = true) {
   const auto period = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(rate_Hz / fundamental_Hz)));
   std::vector<double> power;
   for (std::size_t first = 0; first + period <= force_N.size(); first += period) {
-    double sum = 0;
-    for (const double f : force_N.subspan(first, period)) sum += f * f;
-    power.push_back(sum);
+    double sum = 0, mean = 0;
+    for (const double f : force_N.subspan(first, period)) sum += f * f, mean += f / static_cast<double>(period);
+    power.push_back(level_known ? sum : sum - static_cast<double>(period) * mean * mean);
   }
   if (power.empty()) return std::nullopt;
   const double limit = *std::max_element(power.begin(), power.end()) / 400;

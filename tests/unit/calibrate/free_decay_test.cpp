@@ -83,6 +83,9 @@ TEST_CASE("a bow that stays on ends nowhere, and no bow at all neither") {
   REQUIRE(end);
   CHECK(*end >= 9000);
   CHECK(*end < 9000 + 194);
+  for (std::size_t n = 0; n < force.size(); ++n) force[n] -= 0.2 * std::exp(-static_cast<double>(n) / 15000);  // AC coupled
+  CHECK(!rosin::contact_ends(force, rate_Hz, 660));
+  CHECK(rosin::contact_ends(force, rate_Hz, 660, false) == end);
 }
 
 TEST_CASE("what does not ring freely, or not for long enough, is refused") {
