@@ -21,6 +21,7 @@ namespace rosin {
 struct wave_stroke {
   double position = 0.3;  ///< distance from the near end / length
   double duration_s = 0.36;
+  bool account = false;   ///< keep the books of energy, by the modes under the same force: what the waves lack or have too much is in the error
 };
 
 namespace detail {
@@ -69,7 +70,9 @@ bool run_waves(wave_string<T>& string, Law& law, const Motion& motion, wave_reco
   const std::size_t end = pressed_steps(motion, first, s.force.size(), step_s);
   for (std::size_t i = first; i < s.force.size(); ++i) {
     const rod_state rod = motion(static_cast<double>(i - first) * step_s);
-    const auto answer = law(string.line(rod));
+    const auto line = string.line(rod);
+    const auto answer = law(line);
+    s.slip[i] = static_cast<double>(line.slip(answer.force_N));
     const auto state = string.apply(answer.force_N);
     s.centre[i] = static_cast<double>(state.centre_m_s), s.torsion[i] = static_cast<double>(state.torsion_m_s);
     s.force[i] = static_cast<double>(answer.force_N), s.rod[i] = rod.velocity_m_s;
@@ -97,6 +100,13 @@ inline void sample_waves(modal_take& take, const stroke_steps& s, const modal_de
   if (warm) take.temperature_rise_K = decimate.points(s.temperature);
 }
 
+/// The books, as of a stroke that was simulated by modes (modal_stroke.hpp).
+[[nodiscard]] inline stroke_energy account_of(const wave_design& d, const modal_rig& rig, stroke_steps& s) {
+  const double position = d.end_delay_s[0] / (d.end_delay_s[0] + d.end_delay_s[1]), step_s = d.kernels.step_s, limit_Hz = std::min(250e3, 0.49 / step_s);
+  s.position = {position}, s.rest = {modal_contact{rig, position, limit_Hz, step_s}.left_out()};
+  return account_of(rig, s, limit_Hz, step_s);
+}
+
 [[nodiscard]] inline std::vector<double> end_force(const fir& kernel, const std::vector<double>& sent, std::size_t samples, std::ptrdiff_t stride) {
   std::vector<double> out(samples, 0.0);
   const auto size = static_cast<std::ptrdiff_t>(sent.size());
@@ -115,7 +125,7 @@ inline void sample_waves(modal_take& take, const stroke_steps& s, const modal_de
 /// Simulates a stroke on kernels that design_wave() has made for this rig, position and settings.
 template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
 [[nodiscard]] outcome<modal_take> simulate_wave_stroke(const wave_design& design, const modal_rig& rig, Law law, Motion motion, double duration_s,
-                                                       const wave_settings& settings) {
+                                                       const wave_settings& settings, bool account = false) {
   if (const auto problem = problem_with_duration(duration_s, settings.as_modal()); !problem.empty()) return failure{problem};
   const auto low_pass = settings.low_pass();
   const modal_decimator decimate{low_pass, settings.step_s(), settings.oversampling};
@@ -135,6 +145,7 @@ template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
     signal->resize(std::min(signal->size(), samples));
   take.force_near_N = detail::end_force(ends[0], record.sent[0], samples, settings.oversampling / stride);
   take.force_far_N = detail::end_force(ends[1], record.sent[1], samples, settings.oversampling / stride);
+  if (account) take.energy = detail::account_of(design, rig, record.at_steps);
   return take;
 }
 
@@ -144,7 +155,7 @@ template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
                                                        const wave_settings& settings = {}) {
   const auto design = design_wave(rig, stroke.position, settings);
   if (!design) return failure{design.error()};
-  return simulate_wave_stroke<T>(*design, rig, law, motion, stroke.duration_s, settings);
+  return simulate_wave_stroke<T>(*design, rig, law, motion, stroke.duration_s, settings, stroke.account);
 }
 
 }  // namespace rosin

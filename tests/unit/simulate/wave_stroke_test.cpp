@@ -57,6 +57,17 @@ TEST_CASE("under a given force the string moves, and pulls at its ends, as its m
   }
 }
 
+TEST_CASE("the whole model's balance of energy, by the modes under the force that the waves found") {
+  const rosin::velocity_curve law{rosin::two_exponential_curve<>{}};
+  const auto take = rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{.start_s = 0.001}, {.position = 0.2, .duration_s = 0.06, .account = true}, {.oversampling = 4});
+  REQUIRE(take);
+  REQUIRE(take->energy);
+  CHECK(take->slips > 5);
+  CHECK(std::abs(take->energy->string_error()) < 1e-10);
+  CHECK(std::abs(take->energy->error()) < 3e-3);
+  CHECK(take->energy->friction_J > 0.8 * take->energy->rod_J);
+}
+
 TEST_CASE("how many steps of the far side are computed together changes nothing, on rigid ends and on those that move") {
   const rosin::wave_settings settings{.sample_rate_Hz = 64e3, .oversampling = 4};
   const std::array<rosin::modal_termination, 2> moving{rosin::modal_termination{{{1200, 20, 3}}}, rosin::modal_termination{{{460, 30, 2}}}};
