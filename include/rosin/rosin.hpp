@@ -190,6 +190,7 @@
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 #include <rosin/diagnose/pluck_effects.hpp>
+#include <rosin/diagnose/pluck_prediction.hpp>
 #include <rosin/diagnose/pluck_scene.hpp>
 #include <rosin/diagnose/pluck_score.hpp>
 #include <rosin/diagnose/scene_fit.hpp>

@@ -30,13 +30,15 @@ inline double cost_of(const scene_fit& f, const std::array<double, 2>& noise) {
   return std::isfinite(cost) ? cost : 1e300;
 }
 
-/// -2 ln of the evidence but for a constant (Schwarz): what a fit leaves, and what its effects' parameters cost. Corrections cost nothing.
+/// -2 ln of the evidence but for a constant (Schwarz): what a fit leaves, and what its effects' parameters cost, in the units of what
+/// is left. Corrections cost nothing.
 inline double price_of(const scene_fit& f, const std::array<double, 2>& noise) {
   double parameters = 0, samples = 1;
   for (const pluck_effect& e : f.effects)
     for (const effect_parameter& p : e.parameters) parameters += p.late ? 0 : 1;
   for (const double n : f.quality.samples) samples += n;
-  return cost_of(f, noise) + parameters * std::log(samples) * std::max(1.0, f.quality.inflation());
+  const double cost = cost_of(f, noise);
+  return cost + parameters * std::log(samples) * std::max(1.0, cost / samples);
 }
 
 /// The starting points of one effect at which the score peaks, the highest first.

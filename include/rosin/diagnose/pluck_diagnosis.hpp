@@ -18,7 +18,7 @@
 #pragma once
 
 #include <rosin/diagnose/nonlinear_effects.hpp>
-#include <rosin/diagnose/pluck_candidates.hpp>
+#include <rosin/diagnose/pluck_prediction.hpp>
 
 namespace rosin {
 
@@ -26,13 +26,6 @@ namespace rosin {
 struct pluck_hypothesis {
   std::vector<std::string> ids;  ///< effects, with their place
   double log_evidence = 0;       ///< relative to the best, natural logarithm
-};
-
-/// Where the declared model and the recordings part.
-struct pluck_mismatch {
-  std::size_t take = 0, channel = 0;
-  std::array<double, 2> time_s{}, band_Hz{};
-  double residual_over_noise = 0;
 };
 
 struct pluck_diagnosis {
@@ -62,108 +55,6 @@ inline int free_parameters(const scene_fit& f) {
   return k;
 }
 
-/// Narrowest band around the strongest bin that holds four fifths of a residual's power, by a plain periodogram of at most 4096 samples.
-inline std::array<double, 2> band_of(const Eigen::VectorXd& r, double rate_Hz) {
-  const auto n = static_cast<int>(std::min<Eigen::Index>(r.size(), 4096));
-  const int bins = std::min(n / 2, 400);
-  std::vector<double> power(static_cast<std::size_t>(bins), 0.0);
-  for (int k = 0; k < bins; ++k) {
-    const double w = std::numbers::pi * (k + 0.5) / bins;
-    std::complex<double> sum = 0;
-    const std::complex<double> turn = std::polar(1.0, -w);
-    for (Eigen::Index i = n; i-- > 0;) sum = sum * turn + r[i];
-    power[static_cast<std::size_t>(k)] = std::norm(sum);
-  }
-  const double all = std::accumulate(power.begin(), power.end(), 0.0);
-  std::size_t low = static_cast<std::size_t>(std::max_element(power.begin(), power.end()) - power.begin()), high = low;
-  double held = power[low];
-  while (held < 0.8 * all && (low > 0 || high + 1 < power.size())) {
-    const double below = low > 0 ? power[low - 1] : -1, above = high + 1 < power.size() ? power[high + 1] : -1;
-    if (below > above) held += power[--low];
-    else held += power[++high];
-  }
-  const double width = rate_Hz / 2 / bins;
-  return {static_cast<double>(low) * width, static_cast<double>(high + 1) * width};
-}
-
-/// Channel, quarter period and band in which the residual of the first periods is largest.
-inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, double noise) {
-  const auto problem = data.problem(base.effects, base.value, {1000, base.horizon_periods, true, freedom::all}, {1, 1});
-  pluck_mismatch m;
-  double most = 0, power = 0, count = 0;
-  for (std::size_t t = 0; t < problem.takes(); ++t) {
-    const auto r = residual_of(problem, base.value, t);
-    const double rate = problem.rate_Hz(t);
-    const auto window = static_cast<Eigen::Index>(std::max(16.0, 0.25 * rate / base.value[0]));
-    for (std::size_t c = 0; c < 2; ++c) {
-      power += r[c].squaredNorm(), count += static_cast<double>(r[c].size());
-      for (Eigen::Index i = 0; i + window <= r[c].size(); i += window / 2)
-        if (const double p = r[c].segment(i, window).squaredNorm(); p > most) {
-          most = p;
-          m.take = t, m.channel = c;
-          const double begin = problem.part(t, 1).begin_s + static_cast<double>(i) / rate;
-          m.time_s = {begin, begin + static_cast<double>(window) / rate};
-          m.band_Hz = band_of(r[c], rate);
-        }
-    }
-  }
-  m.residual_over_noise = std::sqrt(power / std::max(1.0, count)) / noise;
-  return m;
-}
-
-/// Of a take that was not fitted: rms residual / rms recorded; the noise's share; samples.
-inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise) {
-  scene_data one{{held}, data.guess, data.options, pluck_layout({held}, data.options)};
-  const auto start = find_start(one.takes, data.guess);
-  if (!start) return {1, 0, 0};
-  Eigen::VectorXd v(one.layout.size());
-  v.head(pluck_layout::first_position) = fit.value.head(pluck_layout::first_position);
-  std::size_t nearest = 0;
-  for (std::size_t t = 1; t < data.takes.size(); ++t)
-    if (std::abs(data.takes[t].position - held.position) < std::abs(data.takes[nearest].position - held.position)) nearest = t;
-  v[one.layout.position(0)] = fit.value[data.layout.position(nearest)] + held.position - data.takes[nearest].position;
-  const auto from = [&](int which) { return fit.value[data.layout.at(nearest, which)]; };
-  v[one.layout.at(0, pluck_layout::release)] = start->release_s[0] + 0.25 / start->fundamental_Hz - 0.25 / fit.value[0];
-  v[one.layout.at(0, pluck_layout::strength)] = std::log(held.strength_N);
-  v[one.layout.at(0, pluck_layout::offset_near)] = from(pluck_layout::offset_near);
-  v[one.layout.at(0, pluck_layout::offset_far)] = from(pluck_layout::offset_far);
-  std::vector<pluck_effect> effects;
-  Eigen::Index at = data.layout.size();
-  double horizon = 1e9;
-  for (const pluck_effect& e : fit.effects) {
-    pluck_effect mine = e;
-    std::erase_if(mine.parameters, [](const effect_parameter& p) { return p.take > 0; });
-    for (const effect_parameter& p : mine.parameters) {
-      v.conservativeResize(v.size() + 1);
-      v[v.size() - 1] = p.take < 0 ? fit.value[at + (&p - mine.parameters.data())] : 0.0;
-    }
-    horizon = std::min(horizon, e.horizon_periods);
-    at += static_cast<Eigen::Index>(e.parameters.size());
-    effects.push_back(std::move(mine));
-  }
-  std::vector<fit_stage> stages{{12, 8, false, freedom::release_only}, {1000, 12, true, freedom::release_only}, {1000, std::min(horizon, fit.horizon_periods), true, freedom::release_only}};
-  const scene_fit seen = fit_scene(one, effects, v, stages, {1e-3, 1e-3});
-  const auto problem = one.problem(effects, seen.value, stages.back(), {1, 1});
-  double power = 0, samples = 0;
-  for (const auto& part : {problem.part(0, 0), problem.part(0, 1)})
-    for (const auto& d : part.data) power += d.squaredNorm(), samples += static_cast<double>(d.size());
-  const double mean_square = (seen.quality.samples[0] + seen.quality.samples[1]) / std::max(1.0, samples);
-  return {seen.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power)), samples};
-}
-
-/// By how much ln L of the takes in `held` is higher with the last effect of a fit than without it, misfit counted as noise.
-inline double held_out_gain(const scene_data& data, const scene_fit& fit, const std::vector<pluck_take>& held, double noise) {
-  scene_fit less = without(data, fit, fit.effects.size() - 1);
-  less = fit_scene(data, less.effects, less.value, {{1000, fit.horizon_periods, true}}, {noise, noise});
-  less.horizon_periods = fit.horizon_periods;
-  double gain = 0;
-  for (const pluck_take& take : held) {
-    const auto b = predicted(data, less, take, noise), a = predicted(data, fit, take, noise);
-    gain += 0.5 * a[2] * (b[0] * b[0] - a[0] * a[0]) / std::max(a[1] * a[1], a[0] * a[0]);
-  }
-  return gain;
-}
-
 /// Whether there is a mismatch of which the best of `fits` leaves more than half (in amplitude): over all of a record, what is small
 /// per period may have turned partials too far for a score test.
 inline bool leaves_much(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits, std::array<double, 2> noise) {
@@ -174,9 +65,135 @@ inline bool leaves_much(const scene_data& data, const scene_fit& before, const s
   return cost_of(fits.front(), noise) - expected > 0.25 * (cost_of(plain, noise) - expected);
 }
 
+/// Adds effects to the declared model one by one, as long as it is worth it.
+class effect_search {
+public:
+  effect_search(pluck_diagnosis& d, const std::vector<pluck_effect>& all)
+      : d_{d}, all_{all}, weigh_{d.declared.noise_N},
+        now_{{}, d.declared.value, d.declared.sd, d.declared.covariance, {}, {}, d.declared.horizon_periods, 0, true} {
+    now_.quality.residual_ratio = d.declared.residual_ratio;
+  }
+
+  void run(int most_effects) {
+    for (int round = 0; round < most_effects && add_one(round); ++round) {}
+    d_.best = exchanged(d_.data, now_, all_, 1, noise_);
+    if (d_.best.effects.empty()) d_.best = d_.base;
+    std::sort(d_.ranking.begin(), d_.ranking.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
+    if (d_.ranking.empty()) return;
+    for (double top = d_.ranking.front().log_evidence; auto& h : d_.ranking) h.log_evidence -= top;
+  }
+  /// What no fit could take for anything else, the mean of both channels.
+  [[nodiscard]] double noise() const { return rms_of(noise_); }
+
+private:
+  /// A model against the one before: gain in ln L, divided by the misfit that is left, and what either leaves beyond the noise.
+  struct comparison {
+    double temper = 1, gain = 0, left = 0, was = 0, samples = 0;
+  };
+
+  [[nodiscard]] std::vector<scene_fit> candidates(int round) const {
+    std::vector<pluck_effect> catalogue;
+    for (const pluck_effect& e : all_)
+      if (std::none_of(now_.effects.begin(), now_.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);
+    const bool strong = round == 0 ? now_.horizon_periods < 1e8 || now_.quality.residual_ratio[0] > 0.05 : now_.quality.residual_ratio[0] > 0.1;
+    std::vector<scene_fit> fits = one_more_effect(d_.data, now_, catalogue, strong, weigh_);
+    if (round == 0 && !strong && leaves_much(d_.data, now_, fits, weigh_)) fits = one_more_effect(d_.data, now_, catalogue, true, weigh_);
+    return fits;
+  }
+  void leave_alone() {
+    d_.base = fit_scene(d_.data, {}, now_.value, {{1000, now_.horizon_periods, true}}, weigh_);
+    noise_ = d_.base.quality.noise;
+    d_.ranking.push_back({{}, 0.0});
+  }
+  [[nodiscard]] comparison compare(const scene_fit& before, const scene_fit& tried) const {
+    comparison c;
+    c.temper = std::max(1.0, tried.quality.inflation());
+    c.samples = tried.quality.samples[0] + tried.quality.samples[1];
+    const double without = cost_of(before, noise_), with = cost_of(tried, noise_);
+    c.gain = 0.5 * (without - with) / c.temper;
+    c.left = std::max(0.0, with - c.samples), c.was = std::max(1e-9, without - c.samples);
+    return c;
+  }
+  void rank(const scene_fit& f, const comparison& c) {
+    d_.ranking.push_back({ids_of(f), -0.5 * cost_of(f, noise_) / c.temper - 0.5 * free_parameters(f) * std::log(c.samples)});
+  }
+  void accept(const std::vector<scene_fit>& fits, const comparison& c) {
+    const scene_fit& tried = fits.front();
+    d_.mismatched = true;
+    d_.found_gain.push_back(c.gain);
+    d_.alternatives.clear();
+    for (const scene_fit& f : fits)
+      if (&f != &tried && f.horizon_periods == tried.horizon_periods && 0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
+        d_.alternatives.push_back(f.effects.back().id());
+    now_ = tried;
+  }
+  /// Whether one was found and another may follow.
+  bool add_one(int round) {
+    const std::vector<scene_fit> fits = candidates(round);
+    if (fits.empty()) {
+      if (round == 0) leave_alone();
+      return false;
+    }
+    const scene_fit& tried = fits.front();
+    const scene_fit before = fit_scene(d_.data, now_.effects, now_.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh_);
+    for (std::size_t c = 0; c < 2; ++c) noise_[c] = std::min({noise_[c], before.quality.noise[c], tried.quality.noise[c]});
+    const comparison c = compare(before, tried);
+    if (round == 0) d_.base = before, all_there_was_ = c.was;
+    const bool worth = round == 0 || (c.left < c.was / 3 && c.was > 1e-4 * all_there_was_);
+    for (const scene_fit& f : fits)
+      if (worth || &f == &tried) rank(f, c);
+    if (round == 0) rank(before, c);
+    // Linear parameters of which there are many (hum) gain half a unit each from noise alone.
+    const double chance = std::max(0, static_cast<int>(tried.effects.back().parameters.size()) - 3);
+    if (!(c.gain > 14 + 0.5 * chance + 2 * std::sqrt(chance)) || !worth) return false;
+    accept(fits, c);
+    return round == 0 || now_.quality.inflation() != 1.0;
+  }
+
+  pluck_diagnosis& d_;
+  const std::vector<pluck_effect>& all_;
+  std::array<double, 2> weigh_, noise_{1e300, 1e300};
+  scene_fit now_;
+  double all_there_was_ = 0;
+};
+
+/// What is real shows in takes that were not fitted, too.
+inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<pluck_take>& held, double noise) {
+  constexpr double beyond_doubt = 200, least = 3;
+  while (!held.empty() && !d.best.effects.empty() && d.found_gain[d.best.effects.size() - 1] < beyond_doubt && held_out_gain(d.data, d.best, held, noise) < least) {
+    const double horizon = d.best.horizon_periods;
+    const scene_fit less = without(d.data, d.best, d.best.effects.size() - 1);
+    d.best = fit_scene(d.data, less.effects, less.value, {{1000, horizon, true, freedom::all}}, {noise, noise});
+    d.found_gain.resize(d.best.effects.size());
+    d.alternatives.clear();
+  }
+  d.mismatched = d.mismatched && !d.best.effects.empty();
+}
+
+/// Before and after on takes that were not fitted, and whether that is an explanation.
+inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool modulated) {
+  scene_fit plain = d.base;
+  plain.horizon_periods = d.best.horizon_periods;
+  for (const pluck_take& take : judged) {
+    const auto b = predicted(d.data, plain, take, noise), a = predicted(d.data, d.best, take, noise);
+    d.before += b[0] * b[0], d.after += a[0] * a[0], d.floor += a[1] * a[1];
+    d.held_out.push_back(take.name);
+  }
+  for (double* x : {&d.before, &d.after, &d.floor}) *x = std::sqrt(*x / static_cast<double>(judged.size()));
+  const auto beyond_noise = [&](double x) { return std::sqrt(std::max(0.0, x * x - d.floor * d.floor)); };
+  const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
+  const bool complete = (left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, 0.12 * was);
+  d.mismatched = d.mismatched || left > 1.5 || modulated;
+  d.explained = !d.mismatched || (complete && !d.best.effects.empty());
+  if (d.explained || excess <= 0.5 * was) return;
+  d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it
+  d.found_gain.clear(), d.alternatives.clear();
+  d.after = d.before;
+}
+
 }  // namespace detail
 
-/// `catalogue`: effects that the declared model does not contain. Takes in `held` are predicted only.
+/// `catalogue_for`: effects that the declared model does not contain. Takes in `held` are predicted only.
 [[nodiscard]] inline outcome<pluck_diagnosis> diagnose_plucks(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
                                                               const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
                                                               int most_effects = 3) {
@@ -184,90 +201,15 @@ inline bool leaves_much(const scene_data& data, const scene_fit& before, const s
   auto declared = fit_plucks(takes, guess, options, most_residual);
   if (!declared) return failure{declared.error()};
   pluck_diagnosis d{{takes, guess, options, declared->layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
-  const std::array<double, 2> weigh = declared->noise_N;
-  scene_fit now{{}, declared->value, declared->sd, declared->covariance, {}, {}, declared->horizon_periods, 0, true};
-  now.quality.residual_ratio = declared->residual_ratio;
   const std::vector<pluck_effect> all = catalogue_for(*declared);
-  std::array<double, 2> noise{1e300, 1e300};
-  double all_there_was = 0;
-  for (int round = 0; round < most_effects; ++round) {
-    std::vector<pluck_effect> catalogue;
-    for (const pluck_effect& e : all)
-      if (std::none_of(now.effects.begin(), now.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);
-    const bool strong = round == 0 ? declared->horizon_periods < 1e8 || declared->residual_ratio[0] > 0.05 : now.quality.residual_ratio[0] > 0.1;
-    std::vector<scene_fit> fits = one_more_effect(d.data, now, catalogue, strong, weigh);
-    if (round == 0 && !strong && detail::leaves_much(d.data, now, fits, weigh)) fits = one_more_effect(d.data, now, catalogue, true, weigh);
-    if (fits.empty() && round == 0) {  // nothing is worth a fit
-      d.base = fit_scene(d.data, {}, now.value, {{1000, now.horizon_periods, true}}, weigh);
-      noise = d.base.quality.noise;
-      d.ranking.push_back({{}, 0.0});
-    }
-    if (fits.empty()) break;
-    const scene_fit& tried = fits.front();
-    const scene_fit before = fit_scene(d.data, now.effects, now.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh);
-    if (round == 0) d.base = before;
-    for (std::size_t c = 0; c < 2; ++c) noise[c] = std::min({noise[c], before.quality.noise[c], tried.quality.noise[c]});
-    const double temper = std::max(1.0, tried.quality.inflation());
-    const double gain = 0.5 * (detail::cost_of(before, noise) - detail::cost_of(tried, noise)) / temper;
-    double expected = 0;
-    for (std::size_t c = 0; c < 2; ++c) expected += tried.quality.samples[c];
-    const double left = std::max(0.0, detail::cost_of(tried, noise) - expected), was = std::max(1e-9, detail::cost_of(before, noise) - expected);
-    if (round == 0) all_there_was = was;
-    const bool worth = round == 0 || (left < was / 3 && was > 1e-4 * all_there_was);
-    const double n_eff = expected;
-    for (const scene_fit& f : fits)
-      if (round == 0 || &f == &fits.front() || worth)
-        d.ranking.push_back({detail::ids_of(f), -0.5 * detail::cost_of(f, noise) / temper - 0.5 * detail::free_parameters(f) * std::log(n_eff)});
-    if (round == 0) d.ranking.push_back({{}, -0.5 * detail::cost_of(before, noise) / temper});
-    // Linear parameters of which there are many (hum) gain half a unit each from noise alone.
-    const double chance = std::max(0, static_cast<int>(tried.effects.back().parameters.size()) - 3);
-    if (!(gain > 14 + 0.5 * chance + 2 * std::sqrt(chance)) || !worth) break;
-    d.mismatched = true;
-    d.found_gain.push_back(gain);
-    d.alternatives.clear();
-    for (const scene_fit& f : fits)
-      if (&f != &tried && f.horizon_periods == tried.horizon_periods && 0.5 * (detail::cost_of(f, noise) - detail::cost_of(tried, noise)) / temper < 5 && detail::free_parameters(f) <= detail::free_parameters(tried) + 2)
-        d.alternatives.push_back(f.effects.back().id());
-    now = tried;
-    if (now.quality.inflation() == 1.0 && round > 0) break;
-  }
-  d.best = exchanged(d.data, now, all, 1, noise);
-  if (d.best.effects.empty()) d.best = d.base;
-  const double typical = std::sqrt((noise[0] * noise[0] + noise[1] * noise[1]) / 2);
-  // What is real shows in takes that were not fitted, too: half of what it must gain in the others, at least.
-  while (!held.empty() && !d.best.effects.empty() && d.found_gain[d.best.effects.size() - 1] < 200 && detail::held_out_gain(d.data, d.best, held, typical) < 3) {
-    const double horizon = d.best.horizon_periods;
-    scene_fit less = detail::without(d.data, d.best, d.best.effects.size() - 1);
-    d.best = fit_scene(d.data, less.effects, less.value, {{1000, horizon, true, freedom::all}}, {typical, typical});
-    d.found_gain.resize(d.best.effects.size());
-    d.alternatives.clear();
-  }
-  d.mismatched = d.mismatched && !d.best.effects.empty();
-  std::sort(d.ranking.begin(), d.ranking.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
-  if (!d.ranking.empty())
-    for (double top = d.ranking.front().log_evidence; auto& h : d.ranking) h.log_evidence -= top;
-  d.mismatch = detail::locate(d.data, d.base, typical);
-
-  double before2 = 0, after2 = 0, floor2 = 0;
-  const std::vector<pluck_take>& judged = held.empty() ? takes : held;
-  scene_fit plain = d.base;
-  plain.horizon_periods = d.best.horizon_periods;
-  for (const pluck_take& take : judged) {
-    const auto b = detail::predicted(d.data, plain, take, typical), a = detail::predicted(d.data, d.best, take, typical);
-    before2 += b[0] * b[0], after2 += a[0] * a[0], floor2 += a[1] * a[1];
-    d.held_out.push_back(take.name);
-  }
-  const double count = static_cast<double>(judged.size());
-  d.before = std::sqrt(before2 / count), d.after = std::sqrt(after2 / count), d.floor = std::sqrt(floor2 / count);
-  const double excess = std::sqrt(std::max(0.0, d.after * d.after - d.floor * d.floor)), was = std::sqrt(std::max(0.0, d.before * d.before - d.floor * d.floor));
-  const bool complete = d.best.quality.inflation() == 1.0 || excess < std::max(0.5 * d.floor, 0.12 * was);
-  d.mismatched = d.mismatched || d.best.quality.inflation() > 1.5;
-  d.explained = !d.mismatched || (complete && !d.best.effects.empty());
-  if (!d.explained && excess > 0.5 * was) {  // what leaves more than half is no part of the answer; the ranking keeps it
-    d.best = plain;
-    d.found_gain.clear(), d.alternatives.clear();
-    d.after = d.before;
-  }
+  detail::effect_search search(d, all);
+  search.run(most_effects);
+  detail::drop_what_is_not_predicted(d, held, search.noise());
+  const std::array<double, 2> still = detail::noise_before_release(d.data, d.best);
+  const bool modulated = detail::is_noisier(d.best.quality.noise, still);
+  const double noise = modulated ? detail::rms_of(still) : search.noise();
+  d.mismatch = detail::locate(d.data, d.base, noise);
+  detail::judge(d, held.empty() ? takes : held, noise, modulated);
   return d;
 }
 

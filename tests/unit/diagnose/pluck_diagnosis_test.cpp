@@ -41,3 +41,41 @@ TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck
   CHECK(d->after < 1.2 * d->floor);
   CHECK(d->mismatch.residual_over_noise > 2);
 }
+
+TEST_CASE("a stiffness that was not declared is found behind a sensor that rings, and then the sensor") {
+  const auto layout = test::two_plucks({});
+  const rosin::string_facts facts{659.69, 128e3, 60e3, 0.175, 0.314, 2};
+  auto ringing = rosin::sensor_resonance_effect(facts, 1);
+  std::erase_if(ringing.starts, [](const auto& start) { return start[1] != 12; });
+  const Eigen::VectorXd v = test::values_of(layout, {std::log(20966.0), std::log(10.2)});
+  std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, {ringing}, v, 0, 3e-4, 1), test::scene_pluck(layout, {ringing}, v, 1, 3e-4, 2)};
+  takes[1].strength_N = 0.5;
+  const auto d = rosin::diagnose_plucks(takes, {}, {.fundamental_Hz = 660}, {.stiffness = false, .internal_loss = false}, [&](const rosin::pluck_fit_result&) {
+    return std::vector<rosin::pluck_effect>{rosin::bending_stiffness_effect(facts), ringing};
+  });
+  REQUIRE_MESSAGE(d, d.error());
+  REQUIRE(d->best.effects.size() == 2);
+  CHECK(d->explained);
+  for (const rosin::pluck_effect& e : d->best.effects) CHECK((e.id() == "bending-stiffness" || e.id() == "sensor-resonance@far"));
+  CHECK(d->after < 1.05 * d->floor);
+}
+
+TEST_CASE("a clock that wavers is a mismatch, though nothing of it shows at the partials, and nothing in the catalogue is it") {
+  const auto wavering = [](double force_N, std::uint64_t seed) {
+    auto take = test::modal_pluck(force_N, seed);
+    for (auto& channel : take.force_N) {
+      const std::vector<double> steady = channel;
+      for (std::size_t i = 1; i + 1 < steady.size(); ++i) {
+        const double late = 0.3 * std::sin(2 * std::numbers::pi * 97 * static_cast<double>(i) / take.rate_Hz);  // of a sample
+        channel[i] += late * (steady[i + 1] - steady[i - 1]) / 2;
+      }
+    }
+    return take;
+  };
+  const auto d = look({wavering(1, 1), wavering(0.5, 2)}, wavering(0.75, 3));
+  REQUIRE_MESSAGE(d, d.error());
+  CHECK(d->mismatched);
+  CHECK_FALSE(d->explained);
+  CHECK(d->before > 3 * d->floor);
+  CHECK(d->mismatch.residual_over_noise > 3);
+}

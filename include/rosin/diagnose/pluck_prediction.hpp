@@ -1,0 +1,152 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What a fit of plucks leaves: where it shows, how well takes that were not fitted are predicted (of them only the instant of release
+// and the strength are free), and whether what rings is noisier than what was held.
+//
+#pragma once
+
+#include <rosin/diagnose/pluck_candidates.hpp>
+
+namespace rosin {
+
+/// Where the declared model and the recordings part.
+struct pluck_mismatch {
+  std::size_t take = 0, channel = 0;
+  std::array<double, 2> time_s{}, band_Hz{};
+  double residual_over_noise = 0;
+};
+
+namespace detail {
+
+/// Narrowest band around the strongest bin that holds four fifths of a residual's power, by a plain periodogram of at most 4096 samples.
+inline std::array<double, 2> band_of(const Eigen::VectorXd& r, double rate_Hz) {
+  const auto n = static_cast<int>(std::min<Eigen::Index>(r.size(), 4096));
+  const int bins = std::min(n / 2, 400);
+  std::vector<double> power(static_cast<std::size_t>(bins), 0.0);
+  for (int k = 0; k < bins; ++k) {
+    const double w = std::numbers::pi * (k + 0.5) / bins;
+    std::complex<double> sum = 0;
+    const std::complex<double> turn = std::polar(1.0, -w);
+    for (Eigen::Index i = n; i-- > 0;) sum = sum * turn + r[i];
+    power[static_cast<std::size_t>(k)] = std::norm(sum);
+  }
+  const double all = std::accumulate(power.begin(), power.end(), 0.0);
+  std::size_t low = static_cast<std::size_t>(std::max_element(power.begin(), power.end()) - power.begin()), high = low;
+  double held = power[low];
+  while (held < 0.8 * all && (low > 0 || high + 1 < power.size())) {
+    const double below = low > 0 ? power[low - 1] : -1, above = high + 1 < power.size() ? power[high + 1] : -1;
+    if (below > above) held += power[--low];
+    else held += power[++high];
+  }
+  const double width = rate_Hz / 2 / bins;
+  return {static_cast<double>(low) * width, static_cast<double>(high + 1) * width};
+}
+
+/// Channel, quarter period and band in which the residual of the first periods is largest.
+inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, double noise) {
+  const auto problem = data.problem(base.effects, base.value, {1000, base.horizon_periods, true, freedom::all}, {1, 1});
+  pluck_mismatch m;
+  double most = 0, power = 0, count = 0;
+  for (std::size_t t = 0; t < problem.takes(); ++t) {
+    const auto r = residual_of(problem, base.value, t);
+    const double rate = problem.rate_Hz(t);
+    const auto window = static_cast<Eigen::Index>(std::max(16.0, 0.25 * rate / base.value[0]));
+    for (std::size_t c = 0; c < 2; ++c) {
+      power += r[c].squaredNorm(), count += static_cast<double>(r[c].size());
+      for (Eigen::Index i = 0; i + window <= r[c].size(); i += window / 2)
+        if (const double p = r[c].segment(i, window).squaredNorm(); p > most) {
+          most = p;
+          m.take = t, m.channel = c;
+          const double begin = problem.part(t, 1).begin_s + static_cast<double>(i) / rate;
+          m.time_s = {begin, begin + static_cast<double>(window) / rate};
+          m.band_Hz = band_of(r[c], rate);
+        }
+    }
+  }
+  m.residual_over_noise = std::sqrt(power / std::max(1.0, count)) / noise;
+  return m;
+}
+
+/// Of a take that was not fitted: rms residual / rms recorded; the noise's share; samples.
+inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise) {
+  scene_data one{{held}, data.guess, data.options, pluck_layout({held}, data.options)};
+  const auto start = find_start(one.takes, data.guess);
+  if (!start) return {1, 0, 0};
+  Eigen::VectorXd v(one.layout.size());
+  v.head(pluck_layout::first_position) = fit.value.head(pluck_layout::first_position);
+  std::size_t nearest = 0;
+  for (std::size_t t = 1; t < data.takes.size(); ++t)
+    if (std::abs(data.takes[t].position - held.position) < std::abs(data.takes[nearest].position - held.position)) nearest = t;
+  v[one.layout.position(0)] = fit.value[data.layout.position(nearest)] + held.position - data.takes[nearest].position;
+  const auto from = [&](int which) { return fit.value[data.layout.at(nearest, which)]; };
+  v[one.layout.at(0, pluck_layout::release)] = start->release_s[0] + 0.25 / start->fundamental_Hz - 0.25 / fit.value[0];
+  v[one.layout.at(0, pluck_layout::strength)] = std::log(held.strength_N);
+  v[one.layout.at(0, pluck_layout::offset_near)] = from(pluck_layout::offset_near);
+  v[one.layout.at(0, pluck_layout::offset_far)] = from(pluck_layout::offset_far);
+  std::vector<pluck_effect> effects;
+  Eigen::Index at = data.layout.size();
+  double horizon = 1e9;
+  for (const pluck_effect& e : fit.effects) {
+    pluck_effect mine = e;
+    std::erase_if(mine.parameters, [](const effect_parameter& p) { return p.take > 0; });
+    for (const effect_parameter& p : mine.parameters) {
+      v.conservativeResize(v.size() + 1);
+      v[v.size() - 1] = p.take < 0 ? fit.value[at + (&p - mine.parameters.data())] : 0.0;
+    }
+    horizon = std::min(horizon, e.horizon_periods);
+    at += static_cast<Eigen::Index>(e.parameters.size());
+    effects.push_back(std::move(mine));
+  }
+  std::vector<fit_stage> stages{{12, 8, false, freedom::release_only}, {1000, 12, true, freedom::release_only}, {1000, std::min(horizon, fit.horizon_periods), true, freedom::release_only}};
+  const scene_fit seen = fit_scene(one, effects, v, stages, {1e-3, 1e-3});
+  const auto problem = one.problem(effects, seen.value, stages.back(), {1, 1});
+  double power = 0, samples = 0;
+  for (const auto& part : {problem.part(0, 0), problem.part(0, 1)})
+    for (const auto& d : part.data) power += d.squaredNorm(), samples += static_cast<double>(d.size());
+  const double mean_square = (seen.quality.samples[0] + seen.quality.samples[1]) / std::max(1.0, samples);
+  return {seen.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power)), samples};
+}
+
+/// Noise per sample of white noise, N, by what the recordings show before the release and a fit does not hold; 0 where that is too short.
+inline std::array<double, 2> noise_before_release(const scene_data& data, const scene_fit& fit) {
+  constexpr double least_samples = 200;
+  const auto problem = data.problem(fit.effects, fit.value, {1000, fit.horizon_periods, true, freedom::all}, {1, 1});
+  std::array<double, 2> power{}, out{};
+  double samples = 0;
+  for (std::size_t t = 0; t < problem.takes(); ++t) {
+    const auto& held = problem.part(t, 0);
+    const auto p = problem.project(held, problem.rate_Hz(t), problem.lines(fit.value, t, 0));
+    double passed = 0;  // the share of white noise that the band lets through
+    for (int i = 0; i < 1000; ++i) passed += std::pow(problem.limits()(problem.rate_Hz(t) * (i + 0.5) / 2000), 2) / 1000;
+    samples += static_cast<double>(held.count()) * passed;
+    for (std::size_t c = 0; c < 2; ++c) power[c] += p.power[c];
+  }
+  for (std::size_t c = 0; c < 2; ++c) out[c] = samples > least_samples ? std::sqrt(power[c] / samples) : 0;
+  return out;
+}
+
+/// What modulates partials - a clock that is not steady, bursts - passes for noise among the lines, but not before the release.
+[[nodiscard]] inline bool is_noisier(const std::array<double, 2>& ringing, const std::array<double, 2>& still) {
+  constexpr double much = 1.3;
+  return (still[0] > 0 && ringing[0] > much * still[0]) || (still[1] > 0 && ringing[1] > much * still[1]);
+}
+
+[[nodiscard]] inline double rms_of(const std::array<double, 2>& x) { return std::sqrt((x[0] * x[0] + x[1] * x[1]) / 2); }
+
+/// By how much ln L of the takes in `held` is higher with the last effect of a fit than without it, misfit counted as noise.
+inline double held_out_gain(const scene_data& data, const scene_fit& fit, const std::vector<pluck_take>& held, double noise) {
+  scene_fit less = without(data, fit, fit.effects.size() - 1);
+  less = fit_scene(data, less.effects, less.value, {{1000, fit.horizon_periods, true}}, {noise, noise});
+  less.horizon_periods = fit.horizon_periods;
+  double gain = 0;
+  for (const pluck_take& take : held) {
+    const auto b = predicted(data, less, take, noise), a = predicted(data, fit, take, noise);
+    gain += 0.5 * a[2] * (b[0] * b[0] - a[0] * a[0]) / std::max(a[1] * a[1], a[0] * a[0]);
+  }
+  return gain;
+}
+
+}  // namespace detail
+
+}  // namespace rosin
