@@ -40,6 +40,11 @@ void find_free_decay(take_reconstruction& r) {
   const auto known = std::span<const double>(r.force_N).subspan(r.known.begin, r.known.end - r.known.begin);
   if (const auto end = rosin::contact_ends(known, r.rate_Hz, f0, !r.ac_coupled)) r.lifted = r.known.begin + *end;
   if (!r.lifted) return;
+  if (r.steady_end > *r.lifted) {  // nothing repeats as well as a string left alone, but that is no bowing
+    r.steady_begin = r.steady_end = 0, r.period_s = 0;
+    r.domains_differ.reset();
+    r.warnings.emplace_back("the motion repeats best after the bow is off: no steady part of the bowing is named");
+  }
   const rosin::free_decay_options expected{.inharmonicity = r.before.at.stiffness_s2 * std::pow(2 * std::numbers::pi * f0, 2), .highest_Hz = r.limits.pass_Hz};
   const auto& f = r.result.force_N;
   auto decay = rosin::fit_free_decay({f[0], f[1]}, r.rate_Hz, f0, r.time_s(*r.lifted), expected);
