@@ -59,7 +59,7 @@ TEST_CASE("under a given force the string moves, and pulls at its ends, as its m
 
 TEST_CASE("the whole model's balance of energy, by the modes under the force that the waves found") {
   const rosin::velocity_curve law{rosin::two_exponential_curve<>{}};
-  const auto take = rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{.start_s = 0.001}, {.position = 0.2, .duration_s = 0.06, .account = true}, {.oversampling = 4});
+  const auto take = rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{.start_s = 0.001}, {.position = 0.2, .duration_s = 0.04, .account = true}, {.oversampling = 4});
   REQUIRE(take);
   REQUIRE(take->energy);
   CHECK(take->slips > 5);
@@ -71,20 +71,19 @@ TEST_CASE("the whole model's balance of energy, by the modes under the force tha
 TEST_CASE("how many steps of the far side are computed together changes nothing, on rigid ends and on those that move") {
   const rosin::wave_settings settings{.sample_rate_Hz = 64e3, .oversampling = 4};
   const std::array<rosin::modal_termination, 2> moving{rosin::modal_termination{{{1200, 20, 3}}}, rosin::modal_termination{{{460, 30, 2}}}};
-  for (const double position : {0.12, 0.85})
-    for (const auto& ends : {std::array<rosin::modal_termination, 2>{}, moving}) {
-      const auto design = rosin::design_wave(rig, position, settings, ends);
-      REQUIRE(design);
-      REQUIRE(!design->kernels.direct.empty());
-      CHECK(design->kernels.far_block > 2 * design->kernels.block);
-      auto together = *design;
-      together.kernels.far_block = together.kernels.block;
-      const auto blocks = rosin::simulate_wave_stroke(*design, rig, imposed_force{}, rosin::steady_rod{}, 0.02, settings);
-      const auto steps = rosin::simulate_wave_stroke(together, rig, imposed_force{}, rosin::steady_rod{}, 0.02, settings);
-      CHECK(delta(blocks->centre_velocity_m_s, steps->centre_velocity_m_s) < 1e-10);
-      CHECK(delta(blocks->force_near_N, steps->force_near_N) < 1e-10);
-      CHECK(delta(blocks->force_far_N, steps->force_far_N) < 1e-10);
-    }
+  for (const auto& [position, ends] : {std::pair{0.12, std::array<rosin::modal_termination, 2>{}}, std::pair{0.85, moving}}) {
+    const auto design = rosin::design_wave(rig, position, settings, ends);
+    REQUIRE(design);
+    REQUIRE(!design->kernels.direct.empty());
+    CHECK(design->kernels.far_block > 2 * design->kernels.block);
+    auto together = *design;
+    together.kernels.far_block = together.kernels.block;
+    const auto blocks = rosin::simulate_wave_stroke(*design, rig, imposed_force{}, rosin::steady_rod{}, 0.01, settings);
+    const auto steps = rosin::simulate_wave_stroke(together, rig, imposed_force{}, rosin::steady_rod{}, 0.01, settings);
+    CHECK(delta(blocks->centre_velocity_m_s, steps->centre_velocity_m_s) < 1e-10);
+    CHECK(delta(blocks->force_near_N, steps->force_near_N) < 1e-10);
+    CHECK(delta(blocks->force_far_N, steps->force_far_N) < 1e-10);
+  }
 }
 
 TEST_CASE("on ends that move the string does what its modes do on them") {
