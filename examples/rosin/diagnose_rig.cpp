@@ -201,6 +201,24 @@ bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d)
 /// What the sticking string moves by beyond noise.
 double stick_excess(const rosin::contact_findings& f) { return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor)); }
 
+/// How far noise alone makes the two versions of a stroke's force part, as a share of the force.
+double parting_by_noise(const diagnosed_stroke& s) {
+  double power = 0, count = 1;
+  for (std::size_t i = s.motion.known.begin; i < s.motion.known.end; ++i) power += s.mean_N[i] * s.mean_N[i], ++count;
+  const double noise_N = std::hypot(s.calibration.noise_N[0] / s.calibration.gain[0], s.calibration.noise_N[1] / s.calibration.gain[1]);
+  return std::sqrt(2.0) * noise_N / std::sqrt(std::max(1e-300, power / count));
+}
+
+/// Whether what no name was found for is as little as noise and imperfect models leave; else what shows it is what d is judged by.
+bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& f, rig_diagnosis& d) {
+  constexpr double much_sticking = 3, much_slipping = 5, much_parting = 5, least_parting = 0.06;
+  const auto apart = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.delta > std::max(least_parting, much_parting * parting_by_noise(s)); });
+  const bool sticks = f.stick_fluctuation > much_sticking * f.stick_floor, slips = f.friction_residual > much_slipping * f.friction_floor;
+  if (apart != strokes.end()) d.metric = "force-consistency", d.take = apart->name, d.before = apart->delta, d.after = d.before, d.noise_floor = parting_by_noise(*apart);
+  else if (sticks || slips) judge_by(sticks ? "stick-fluctuation" : "friction-residual", f, d);
+  return apart == strokes.end() && !sticks && !slips;
+}
+
 /// One effect of the contact after the other; true if the contact is as the model then has it. Where one was found in what sticks, that has
 /// to move by at most half of what it did, or by no more than noise makes it; else none is named.
 bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const std::vector<std::string>& without, rig_diagnosis& d) {
@@ -220,7 +238,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   }
   if (d.missing.size() == others) {
     if (!found.as_declared && others == 0) judge_by(found.hypotheses.front().statistic, found, d);
-    return found.as_declared || others > 0;
+    return others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
   }
   if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());

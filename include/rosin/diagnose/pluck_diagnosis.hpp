@@ -183,7 +183,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   const auto beyond_noise = [&](double x) { return std::sqrt(std::max(0.0, x * x - d.floor * d.floor)); };
   const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
   const bool complete = (left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, 0.12 * was);
-  d.mismatched = d.mismatched || left > 1.5 || modulated;
+  d.mismatched = d.mismatched || left > 1.5 || modulated || was > 0.6 * d.floor;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   if (d.explained || excess <= 0.5 * was) return;
   d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it
