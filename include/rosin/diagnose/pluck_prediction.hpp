@@ -108,7 +108,14 @@ inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& 
   return {seen.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power)), samples};
 }
 
-/// Noise per sample of white noise, N, by what the recordings show before the release and a fit does not hold; 0 where that is too short.
+/// What is left of a series without its mean and slope, squared and summed.
+[[nodiscard]] inline double power_without_trend(const Eigen::VectorXd& x) {
+  if (x.size() < 3) return 0;
+  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(x.size(), -1, 1), level = x.array() - x.mean();
+  return (level - t * (t.dot(level) / t.squaredNorm())).squaredNorm();
+}
+
+/// Noise per sample of white noise, N, by what the recordings show before the release beside the steady force; 0 where that is too short.
 inline std::array<double, 2> noise_before_release(const scene_data& data, const scene_fit& fit) {
   constexpr double least_samples = 200;
   const auto problem = data.problem(fit.effects, fit.value, {1000, fit.horizon_periods, true, freedom::all}, {1, 1});
@@ -116,11 +123,10 @@ inline std::array<double, 2> noise_before_release(const scene_data& data, const 
   double samples = 0;
   for (std::size_t t = 0; t < problem.takes(); ++t) {
     const auto& held = problem.part(t, 0);
-    const auto p = problem.project(held, problem.rate_Hz(t), problem.lines(fit.value, t, 0));
     double passed = 0;  // the share of white noise that the band lets through
     for (int i = 0; i < 1000; ++i) passed += std::pow(problem.limits()(problem.rate_Hz(t) * (i + 0.5) / 2000), 2) / 1000;
     samples += static_cast<double>(held.count()) * passed;
-    for (std::size_t c = 0; c < 2; ++c) power[c] += p.power[c];
+    for (std::size_t c = 0; c < 2; ++c) power[c] += power_without_trend(held.data[c]);
   }
   for (std::size_t c = 0; c < 2; ++c) out[c] = samples > least_samples ? std::sqrt(power[c] / samples) : 0;
   return out;
