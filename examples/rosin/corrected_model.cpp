@@ -30,6 +30,13 @@ std::array<double, 2> value_of(const json& calibration, const std::string& name)
   return {it->value("value", NAN), it->value("sd", 0.0)};
 }
 
+/// A diagnosis may have left a pluck out that contradicts the others, and fitted one that was to be held out.
+void keep_calibrated(const json& calibration, plucks_to_diagnose& plucks) {
+  plucks.takes.insert(plucks.takes.end(), plucks.held.begin(), plucks.held.end());
+  plucks.held.clear();
+  std::erase_if(plucks.takes, [&](const rosin::pluck_take& t) { return !calibration.contains("release_s of " + t.name); });
+}
+
 }  // namespace
 
 rosin::outcome<corrected_model> read_model(const std::string& path, const rosin::rig& rig, provenance& from) {
@@ -41,9 +48,11 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
     return wrong("is no diagnosis (rosin diagnose --json writes one)");
   const rosin::rig_values values = rosin::values_of(rig);
   if (!values.impedance_Ns_m) return wrong(rig.file + " does not tell the string's impedance: length_m and tension_N are needed");
-  const auto plucks = plucks_of(rig, values, from);
+  auto plucks = plucks_of(rig, values, from);
   if (!plucks) return rosin::failure{plucks.error()};
   const json& calibration = document["calibration"];
+  keep_calibrated(calibration, *plucks);
+  if (plucks->takes.empty()) return wrong("calibration has none of the plucks that " + rig.file + " names");
   corrected_model out{path, {}, 0, {}, {}, from};
   const rosin::pluck_layout layout(plucks->takes, plucks->options);
   const double rate = plucks->takes.front().rate_Hz, pitch = value_of(calibration, layout.name(rosin::pluck_layout::fundamental))[0];

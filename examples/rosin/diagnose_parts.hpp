@@ -8,7 +8,7 @@
 
 #include <rosin/acquire/rig_values.hpp>
 #include <rosin/diagnose/contact_effects.hpp>
-#include <rosin/diagnose/pluck_diagnosis.hpp>
+#include <rosin/diagnose/odd_pluck.hpp>
 #include <rosin/diagnose/tension_drift.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
 
@@ -24,6 +24,7 @@ struct diagnosed_stroke {
   rosin::bow_motion<double> motion;
   rosin::reconstruction_uncertainty sd;
   double force_sd_N = 0, velocity_sd_m_s = 0, delta = 0;  ///< in the middle of the take; Eq. (12)
+  double level_sd_N = 0;                                  ///< of the mean force, where it was lost and is estimated
 };
 
 /// The plucks to fit and to keep aside, what is known before, and what the declared model already holds.
@@ -38,12 +39,22 @@ struct plucks_to_diagnose {
 [[nodiscard]] rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d,
                                                                         const std::vector<std::string>& without = {});
 
+/// A pluck that contradicts the others: what is said of it, and what the diagnosis then is about.
+[[nodiscard]] odd_take described(const rosin::odd_pluck& odd);
+void add_odd(const odd_take& odd, rig_diagnosis& d);
+/// Samples that the checks found lost in any take; such a take is in no fit.
+void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, provenance& from, rig_diagnosis& d);
+/// Plucks that were made clearly elsewhere than declared.
+void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, rig_diagnosis& d);
+
 /// Bowed takes (all, or the one named) with the string, the ends and the sensors that the plucks tell of; what cannot be used is said
 /// in `warnings`. Band: as given, or 0.30 to 0.45 of the sampling rate.
 [[nodiscard]] std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks,
                                                                 double tension_drift, provenance& from, std::vector<std::string>& warnings,
                                                                 const std::string& only = {}, std::optional<rosin::band> band = {});
 [[nodiscard]] rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks);
+/// The mean force that AC-coupled sensors lost, as far as friction is usually known, put into what the strokes are examined with.
+void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, std::vector<diagnosed_stroke>& strokes);
 /// Nothing sits on the string and its ends are rigid, as far as plucks tell.
 [[nodiscard]] bool is_plain(const rosin::pluck_diagnosis& plucks);
 /// The contact as the rig file declares it.

@@ -24,13 +24,19 @@ rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig,
   d.warnings.insert(d.warnings.end(), plucks->warnings.begin(), plucks->warnings.end());
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;
   const double rate = plucks->takes.front().rate_Hz;
-  const std::size_t count = plucks->takes.size();
   std::vector<std::string> known = physics_of(rig);
   known.insert(known.end(), without.begin(), without.end());
-  return rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, [=](const rosin::pluck_fit_result& fit) {
-    const rosin::string_facts facts{fit.value[rosin::pluck_layout::fundamental], rate, fit.limits.stop_Hz, impedance, length, count};
+  const auto catalogue = [=](const rosin::pluck_fit_result& fit) {
+    const rosin::string_facts facts{fit.value[rosin::pluck_layout::fundamental], rate, fit.limits.stop_Hz, impedance, length, fit.layout.takes()};
     return rosin::catalogue_without(known, facts, fit.limits);
-  });
+  };
+  auto found = rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
+  if (!found || found->explained) return found;
+  auto odd = rosin::find_odd_pluck(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
+  if (!odd) return found;
+  d.odd = described(*odd);
+  d.warnings.push_back(d.odd->statement);
+  return std::move(odd->others);
 }
 
 }  // namespace tool

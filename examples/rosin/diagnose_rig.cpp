@@ -210,13 +210,13 @@ double parting_by_noise(const diagnosed_stroke& s) {
 }
 
 /// Whether what no name was found for is as little as noise and imperfect models leave; else what shows it is what d is judged by.
-bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& f, rig_diagnosis& d) {
-  constexpr double much_sticking = 3, much_slipping = 5, much_parting = 5, least_parting = 0.06;
-  const auto apart = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.delta > std::max(least_parting, much_parting * parting_by_noise(s)); });
-  const bool sticks = f.stick_fluctuation > much_sticking * f.stick_floor, slips = f.friction_residual > much_slipping * f.friction_floor;
+bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found, rig_diagnosis& d) {
+  constexpr double much = 5, least = 0.06;
+  const auto apart = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.delta > std::max(least, much * parting_by_noise(s)); });
+  const std::string statistic = rosin::beyond_doubt(found);
   if (apart != strokes.end()) d.metric = "force-consistency", d.take = apart->name, d.before = apart->delta, d.after = d.before, d.noise_floor = parting_by_noise(*apart);
-  else if (sticks || slips) judge_by(sticks ? "stick-fluctuation" : "friction-residual", f, d);
-  return apart == strokes.end() && !sticks && !slips;
+  else if (!statistic.empty()) judge_by(statistic, found, d);
+  return apart == strokes.end() && statistic.empty();
 }
 
 /// One effect of the contact after the other; true if the contact is as the model then has it. Where one was found in what sticks, that has
@@ -266,6 +266,10 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   if (!plucks) return rosin::failure{plucks.error()};
   const rosin::pluck_diagnosis& p = *plucks;
   take_over(p, values, d);
+  const auto knows = [&](const char* effect) { return std::find(without.begin(), without.end(), effect) == without.end(); };
+  if (p.explained && knows("pluck-position")) name_pluck_position(values, p, d);
+  if (d.odd) add_odd(*d.odd, d);
+  if (p.explained && knows("dropouts")) name_dropouts(rig, p, from, d);
   add_calibration(p, d);
 
   std::vector<diagnosed_stroke> strokes;
@@ -277,16 +281,18 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   step();
   if (!strokes.empty()) {
     const rosin::tension_drift drift = drift_of(strokes, p);
-    if (drifted(drift) && std::find(without.begin(), without.end(), "tension-drift") == without.end()) {
+    if (drifted(drift) && knows("tension-drift")) {
       if (stretched_by_motion(drift, p, values)) d.assumed.push_back("the strokes' tension is " + rosin::detail::figure(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
       else add_drift(drift, d);
       strokes = reconstruct_strokes(rig, values, p, drift.relative, from, d.warnings);
     }
     step();
+    add_lost_levels(rig, p, strokes);
     contact_open = !examine_contact(rig, strokes, plain_string, without, d);
   }
   rank(d);
-  d.verdict = !p.explained || contact_open ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";
+  const bool contradicted = d.odd && !d.odd->lost;
+  d.verdict = !p.explained || contact_open || contradicted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";
   if (d.verdict != "no-mismatch" && d.take.empty()) {
     d.take = strokes.empty() ? p.data.takes.front().name : strokes.front().name;
     d.residual_over_noise = d.noise_floor > 0 ? d.before / d.noise_floor : 0;

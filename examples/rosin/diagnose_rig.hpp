@@ -33,6 +33,15 @@ struct missing_effect {
   std::string statement;
 };
 
+/// A pluck that contradicts the others, and why if that is known.
+struct odd_take {
+  std::string name, statement;
+  double before = 0, floor = 0;
+  std::optional<double> after;
+  std::array<double, 2> time_s{};
+  std::optional<missing_effect> lost;
+};
+
 struct ranked_model {
   std::vector<std::string> effects;
   double log10_evidence = 0;
@@ -83,6 +92,7 @@ struct rig_diagnosis {
   std::optional<std::array<double, 2>> time_s, band_Hz;
   std::optional<double> position;
   double residual_over_noise = 0;
+  std::optional<odd_take> odd;  ///< left out of the fit
   std::optional<residual_picture> residual;
   std::vector<std::string> assumed, warnings;
   std::optional<pickup_picture> pickup;  ///< of a rig without two force channels

@@ -4,6 +4,7 @@
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
+#include <rosin/reconstruct/dc_level.hpp>
 
 namespace tool {
 
@@ -93,6 +94,21 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
   return out;
 }
 
+void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, std::vector<diagnosed_stroke>& strokes) {
+  const rosin::pluck_scene scene = rosin::scene_of(plucks.data, plucks.best);
+  if (!(scene.sensors[0].corner_Hz > 0) && !rig.channel("near")->ac_coupled_Hz && !rig.channel("far")->ac_coupled_Hz) return;
+  for (diagnosed_stroke& s : strokes) {
+    const auto dc = rosin::estimate_dc_level(s.mean_N, s.mean_m_s, s.speed_m_s, s.normal_force_N);
+    if (!dc.available) continue;
+    s.level_sd_N = dc.sd_N;
+    for (auto* force : {&s.mean_N, &s.motion.force_near_N, &s.motion.force_far_N})
+      for (double& f : *force) f += dc.level_N;
+    const auto& delay = s.calibration.at.delay_s;
+    for (std::size_t c = 0; c < 2; ++c)
+      for (double& f : s.force_N[c]) f += dc.level_N * rosin::static_forces(delay[0] / (delay[0] + delay[1]))[c];
+  }
+}
+
 rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks) {
   const double rate = strokes.front().rate_Hz;
   const rosin::band limits{0.30 * rate, 0.45 * rate};
@@ -130,7 +146,7 @@ rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diag
     t.delay_s = s.calibration.at.delay_s, t.stiffness_s2 = s.calibration.at.stiffness_s2;
     t.inverse_q = s.calibration.at.loss.inverse_q(0.5 / (t.delay_s[0] + t.delay_s[1]));
     t.impedance_Ns_m = s.calibration.at.impedance_Ns_m, t.length_m = rig.string.length_m.value_or(0);
-    t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.edge_Hz = 0.45 * s.rate_Hz;
+    t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.level_sd_N = s.level_sd_N, t.edge_Hz = 0.45 * s.rate_Hz;
     takes.push_back(t);
   }
   return rosin::contact_hypotheses(takes, model);

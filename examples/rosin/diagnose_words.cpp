@@ -73,6 +73,8 @@ std::string statement_of(const missing_effect& m) {
   }
   if (m.effect == "channel-crosstalk") return v("fraction", 100) + " % of each channel leaks into the other.";
   if (m.effect == "sensor-nonlinearity") return "The " + m.channel + " channel is curved: f + " + v("quadratic_per_N") + " f^2.";
+  if (m.effect == "phantom-partials") return "The " + m.channel + " transducer feels the string's tension, too: " + v("sensed_axial_stiffness_N") + " N per unit of strain.";
+  if (m.effect == "clock-drift") return "The far channel's clock is " + v("relative", 1e6) + " ppm fast against the near one's.";
   if (m.effect == "mains-hum") return "Mains hum at " + v("frequency_Hz", 1, "%.4g") + " Hz, " + v("amplitude_N", 1e3) + " mN.";
   if (m.effect == "slow-release") return "The wire lets go over " + v("duration_s", 1e6) + " us.";
   if (m.effect == "finite-pluck-width") return "The wire grips the string over " + v("width_m", 1e3) + " mm.";

@@ -14,6 +14,7 @@
 #include <doctest/doctest.h>
 
 #include "support/moving_end_rig.hpp"
+#include "support/through_band.hpp"
 
 #include <cstdio>
 
@@ -59,23 +60,13 @@ std::vector<rosin::pluck_take> plucks_of(moving_rig& r) {
   return takes;
 }
 
-std::vector<double> through_band(const std::vector<double>& x) {
-  const rosin::fir k = rosin::sample_response([](double) { return 1.0; }, limits, rate_Hz, -200, 200);
-  std::vector<double> y(x.size(), std::nan(""));
-  for (std::size_t n = 200; n + 200 < x.size(); ++n) {
-    y[n] = 0;
-    for (std::size_t j = 0; j <= 400; ++j) y[n] += k.taps[j] * x[n + 200 - j];
-  }
-  return y;
-}
-
 /// Error over stated standard deviation: rms over the samples after the best scale, and of that scale.
 struct coverage {
   double random = 0, systematic = 0, per_cent = 0;
 };
 
 coverage judge(const std::vector<double>& made, const std::vector<double>& sd, const std::vector<double>& raw_truth, double scale_sd) {
-  const auto truth = through_band(raw_truth);
+  const auto truth = test::through_band(raw_truth, limits, rate_Hz);
   double count = 0, m = 0, t = 0, mm = 0, mt = 0, tt = 0;
   const auto each = [&](auto&& see) {
     for (std::size_t i = 0; i < made.size(); ++i)

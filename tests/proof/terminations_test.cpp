@@ -14,6 +14,7 @@
 #include <doctest/doctest.h>
 
 #include "support/moving_end_rig.hpp"
+#include "support/through_band.hpp"
 
 #include <cstdio>
 #include <string>
@@ -36,16 +37,6 @@ std::vector<rosin::pluck_take> plucks_of(const test::moving_end_rig& rig, double
     takes.push_back({"pluck-" + std::to_string(takes.size() + 1), rate_Hz, {take.near_N, take.far_N}, 1, 0.03, at});
   }
   return takes;
-}
-
-std::vector<double> through_band(const std::vector<double>& x) {
-  const rosin::fir k = rosin::sample_response([](double) { return 1.0; }, limits, rate_Hz, -200, 200);
-  std::vector<double> y(x.size(), std::nan(""));
-  for (std::size_t n = 200; n + 200 < x.size(); ++n) {
-    y[n] = 0;
-    for (std::size_t j = 0; j <= 400; ++j) y[n] += k.taps[j] * x[n + 200 - j];
-  }
-  return y;
 }
 
 /// What a, best scaled, misses of b, means aside: rms, in the unit of b, and in per cent of b's.
@@ -77,7 +68,7 @@ errors errors_of(const rosin::calibration& c, const ends& e, const test::moving_
       {recorded[0], recorded[1], near.times_impedance_N, far.times_impedance_N});
   std::vector<double> force, velocity;
   for (std::size_t i = 0; i < m.force_near_N.size(); ++i) force.push_back(m.force_N(i)), velocity.push_back(m.velocity_m_s(i));
-  return {missed(force, through_band(take.force_N), from, to), missed(velocity, through_band(take.velocity_m_s), from, to)};
+  return {missed(force, test::through_band(take.force_N, limits, rate_Hz), from, to), missed(velocity, test::through_band(take.velocity_m_s, limits, rate_Hz), from, to)};
 }
 
 struct row {

@@ -27,8 +27,16 @@ struct contact_findings {
   double threshold = 0;                               ///< gains below it are what imperfect models of a contact as declared gain
   double tone_threshold = 0;                          ///< the same for tones in time, which a string does not make by itself, and for laws of equal freedom
   bool as_declared = true;
+  bool slips_resolved = true;                         ///< slips last long enough in the band for the law's residual to be judged
   std::vector<std::string> warnings;
 };
+
+/// The statistic that shows several times what noise and imperfect models leave, whether any effect gains or not; empty: none does.
+[[nodiscard]] inline std::string beyond_doubt(const contact_findings& f) {
+  constexpr double much_sticking = 3, much_slipping = 5;
+  if (f.stick_fluctuation > much_sticking * f.stick_floor) return "stick-fluctuation";
+  return f.slips_resolved && f.friction_residual > much_slipping * f.friction_floor ? "friction-residual" : "";
+}
 
 namespace detail {
 
@@ -78,6 +86,21 @@ inline void add_stick_hypotheses(stick_bench& bench, const std::vector<contact_t
   common_share(out.hypotheses, "stick-fluctuation");
 }
 
+/// Whether slips last nine periods of the band's edge on the average of their samples, in every take: in less, a band-limited force
+/// is off any law.
+[[nodiscard]] inline bool slips_are_resolved(const slip_bench& bench, const std::vector<contact_take>& takes) {
+  for (std::size_t t = 0; t < bench.records().size(); ++t) {
+    double sum = 0, squares = 0;
+    for (const auto& s : bench.records()[t].phases.slips) {
+      const auto length = static_cast<double>(s.end - s.begin);
+      sum += length, squares += length * length;
+    }
+    const double edge_Hz = takes[t].edge_Hz > 0 ? takes[t].edge_Hz : 0.45 * takes[t].rate_Hz;
+    if (squares / std::max(1.0, sum) * edge_Hz < 9 * takes[t].rate_Hz) return false;
+  }
+  return true;
+}
+
 inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_take>& takes, contact_findings& out) {
   const slip_bench bench(sticks, takes);
   if (!bench.usable()) {
@@ -90,6 +113,7 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   if (!is_known("thermal-friction")) out.hypotheses.push_back(law_hypothesis(bench));
   out.friction_residual = bench.declared().residual();
   out.friction_floor = bench.floor();
+  out.slips_resolved = slips_are_resolved(bench, takes);
   common_share(out.hypotheses, "friction-residual");
 }
 

@@ -25,10 +25,11 @@ public:
     for (std::size_t t = 0; t < records_.size(); ++t) {
       samples += records_[t].slips.sample.size();
       floor_ = std::max({floor_, 0.003, 0.6 * takes[t].force_sd_N / takes[t].normal_force_N});
+      level_sd_ = std::max(level_sd_, takes[t].level_sd_N / takes[t].normal_force_N);
     }
     usable_ = samples > 400 && std::all_of(records_.begin(), records_.end(), [](const auto& r) { return r.slips.sample.size() > 100 && r.normal_N > 0; });
     if (!usable_) return;
-    declared_ = sticks.model().law == contact_law::thermal ? fit_thermal(records_, floor_) : fit_velocity_curve(records_, floor_);
+    declared_ = fit(sticks.model().law == contact_law::thermal);
     if (sticks.model().normal_ripple_Hz) include_ripple(*sticks.model().normal_ripple_Hz);
   }
 
@@ -37,6 +38,22 @@ public:
   [[nodiscard]] const std::vector<slip_record>& records() const noexcept { return records_; }
   [[nodiscard]] const law_fit& declared() const noexcept { return declared_; }
   [[nodiscard]] double pitch_Hz() const noexcept { return pitch_; }
+  /// Of the mean friction coefficient, where sensors lost the force's mean.
+  [[nodiscard]] double level_sd() const noexcept { return level_sd_; }
+  /// The thermal law or the curve along the motion. Where the mean force was lost, strokes may be off against the first by a constant.
+  [[nodiscard]] law_fit fit(bool thermal) const {
+    law_fit law = thermal ? fit_thermal(records_, floor_) : fit_velocity_curve(records_, floor_);
+    if (!(level_sd_ > 0)) return law;
+    for (std::size_t t = 1; t < law.design.rows.size(); ++t) {
+      auto& rows = law.design.rows[t];
+      const Eigen::Index c = rows.own.cols(), smooth = std::min(rows.target.size(), rows.shared.cols() - 2);  // rows that keep the law smooth
+      rows.own.conservativeResize(rows.target.size(), c + 1);
+      rows.own.col(c).setZero();
+      rows.own.col(c).head(rows.target.size() - smooth).setOnes();
+    }
+    law.fit = fit_design(law.design, floor_);
+    return law;
+  }
 
   /// Friction as the declared law has it, at the rows of a take.
   [[nodiscard]] Eigen::VectorXd predicted(std::size_t take) const {
@@ -64,7 +81,7 @@ private:
   }
 
   std::vector<slip_record> records_;
-  double pitch_ = 0, floor_ = 0;
+  double pitch_ = 0, floor_ = 0, level_sd_ = 0;
   bool usable_ = false;
   law_fit declared_{};
 };
@@ -104,6 +121,9 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   double size = 0;
   for (const auto& own : fit.solution.own) size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
   h.parameters[1].value = size;
+  double mu = 0;
+  for (std::size_t t = 0; t < bench.records().size(); ++t) mu += std::abs(bench.predicted(t).mean()) / static_cast<double>(bench.records().size());
+  h.parameters[1].sd = std::hypot(h.parameters[1].sd, size * bench.level_sd() / std::max(0.1, mu - bench.level_sd()));  // the level divides
   return h;
 }
 
@@ -119,7 +139,7 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
     h.share = bench.declared().fit.share;
     return h;
   }
-  const auto other = thermal ? fit_thermal(bench.records(), bench.floor()) : fit_velocity_curve(bench.records(), bench.floor());
+  const law_fit other = bench.fit(thermal);
   detail::settle_hypothesis(bench, other.fit, h);
   h.decided = other.heat_memory || (other.rates.exchange_1_m < 1.1e4 && other.rates.conduction_1_s < 4.5e3 && other.rates.renewal < 9e3);
   if (thermal && !other.heat_memory)

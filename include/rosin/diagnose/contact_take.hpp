@@ -31,6 +31,7 @@ struct contact_take {
   double stiffness_s2 = 0, inverse_q = 0;                               ///< of the transverse waves, for a contact of some width
   double impedance_Ns_m = 0, length_m = 0;                              ///< length 0: unknown
   double force_sd_N = 0, velocity_sd_m_s = 0;                           ///< random, of one sample
+  double level_sd_N = 0;                                                ///< of the force's mean, where AC-coupled sensors lost it; 0: known
   double edge_Hz = 0;                                                   ///< where the reconstruction's band ends; 0: 0.45 of the rate
   double start_s = 0.03;                                                ///< until the stroke is steady
 };

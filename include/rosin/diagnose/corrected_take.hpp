@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Bowed takes without what the sensors did to them, once plucks have told what that is: each channel's own response divided out in
-// the frequency domain, crosstalk inverted, mains hum taken out, a curved characteristic straightened. Recorded nominal newtons in
-// and out. Effects on the string itself are not undone here.
+// the frequency domain, crosstalk inverted, mains hum taken out, a curved characteristic straightened, another clock's samples read at the
+// instants of the first. Recorded nominal newtons in and out. Effects on the string itself are not undone here.
 //
 #pragma once
 
@@ -54,7 +54,7 @@ inline void divide_by_sensor(std::vector<double>& x, const sensor_response& sens
 inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::array<std::vector<double>, 2>& recorded, double rate_Hz, double edge_Hz) {
   Eigen::Index at = data.layout.size();
   for (const pluck_effect& e : fit.effects) {
-    if (e.name == "sensor-nonlinearity" && e.undo) {
+    if ((e.name == "sensor-nonlinearity" || e.name == "clock-drift") && e.undo) {
       std::vector<pluck_take> one(1);
       one[0].force_N = recorded;
       e.undo(one, data.layout, fit.value, fit.value[at]);

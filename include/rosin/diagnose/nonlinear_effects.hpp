@@ -8,7 +8,8 @@
 //     q_n'' + (w_n / Q) q_n' + [w_n^2 + e(t) (c k_n)^2] q_n = 0,    e = EA / (2 L T) integral y'^2 dx = EA / (4 T) sum (k_n q_n)^2
 //
 // (Kirchhoff, Carrier; specification sheet 6.1, items 8 and 16), is simulated twice, with and without e, and the difference taken
-// out: each mode turns exactly through half a step, is kicked by the tension, and turns on (Strang).
+// out: each mode turns exactly through half a step, is kicked by the tension, and turns on (Strang). A sensor that also feels the
+// tension itself records  f + s (1 / 2L) integral y'^2 dx:  sums and differences of partials, which players know as phantoms.
 //
 #pragma once
 
@@ -28,6 +29,12 @@ inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel)
   return e;
 }
 
+/// What stretching_pluck gives: forces on {near, far} relative to the pluck's own, and the string's mean strain (1 / 2L) integral y'^2 dx.
+struct stretched_motion {
+  std::array<std::vector<double>, 2> force;
+  std::vector<double> strain;
+};
+
 /// Forces on both ends of a plucked string whose tension follows its length.
 class stretching_pluck {
 public:
@@ -42,9 +49,9 @@ public:
     }
   }
 
-  /// Force on {near, far} relative to the pluck's own force: `count` values, the first `first_s` after the release (in [0, sample_s]),
-  /// then every sample_s, each reached in `steps` steps. stretch: EA / (4 T), dimensionless with k q in units of slope.
-  [[nodiscard]] std::array<std::vector<double>, 2> run(double stretch, double first_s, double sample_s, std::size_t steps, std::size_t count) const {
+  /// `count` values, the first `first_s` after the release (in [0, sample_s]), then every sample_s, each reached in `steps` steps.
+  /// stretch: EA / (4 T), dimensionless with k q in units of slope.
+  [[nodiscard]] stretched_motion run(double stretch, double first_s, double sample_s, std::size_t steps, std::size_t count) const {
     std::vector<double> q(modes_.size()), p(modes_.size(), 0.0);
     double e = 0;
     for (int i = 0; i < 8; ++i) {  // the held string is stretched as well
@@ -55,7 +62,7 @@ public:
       }
       e = stretch * sum;
     }
-    std::array<std::vector<double>, 2> out{std::vector<double>(count), std::vector<double>(count)};
+    stretched_motion out{{std::vector<double>(count), std::vector<double>(count)}, std::vector<double>(count)};
     const double first_step_s = first_s / static_cast<double>(steps), step_s = sample_s / static_cast<double>(steps);
     const std::vector<half_turn> first_turns = half_turns(first_step_s), turns = half_turns(step_s);
     for (std::size_t k = 0; k < steps; ++k) step(q, p, first_turns, stretch, first_step_s);
@@ -64,10 +71,17 @@ public:
       for (std::size_t n = 0; n < q.size(); ++n) sum += q[n] * q[n];
       e = stretch * sum;
       for (std::size_t n = 0; n < q.size(); ++n) (modes_[n].sign > 0 ? odd : even) += modes_[n].weight * (modes_[n].stiff + e) * q[n];
-      out[0][i] = (odd + even) / force_, out[1][i] = (odd - even) / force_;
+      out.force[0][i] = (odd + even) / force_, out.force[1][i] = (odd - even) / force_, out.strain[i] = sum / 4;
       for (std::size_t k = 0; k < steps; ++k) step(q, p, turns, stretch, step_s);
     }
     return out;
+  }
+
+  /// Mean strain of the held string.
+  [[nodiscard]] double held_strain() const {
+    double sum = 0;
+    for (const mode& m : modes_) sum += std::pow(force_ * m.held, 2);
+    return sum / 4;
   }
 
 private:
@@ -157,8 +171,29 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
       const auto with = run(slack, axial_N / (4 * tension)), without = run(mean, 0);
       for (std::size_t c = 0; c < 2; ++c) {
         const double gain = newtons * std::exp(v[pluck_layout::gain_near + static_cast<int>(c)]);
-        for (std::size_t i = 0; i < count; ++i) takes[t].force_N[c][first + i] -= gain * (with[c][i] - without[c][i]);
+        for (std::size_t i = 0; i < count; ++i) takes[t].force_N[c][first + i] -= gain * (with.force[c][i] - without.force[c][i]);
       }
+    }
+  };
+  return e;
+}
+
+/// A channel that feels the tension, too: what it reads per unit of strain. The tension is the same all along the string: the partials
+/// are below its longitudinal modes.
+inline pluck_effect phantom_partials_effect(const string_facts& f, const band& limits, int channel) {
+  const double tension = f.impedance_Ns_m * 2 * f.length_m * f.fundamental_Hz;
+  pluck_effect e{"phantom-partials", channel, false, {{"sensed_axial_stiffness_N", -3e6, 3e6, 1e-3 * tension, false, -1, true}}, {{0}}, -3, {}};
+  e.undo = [=](std::vector<pluck_take>& takes, const pluck_layout& layout, const Eigen::VectorXd& v, double sensed_N) {
+    const auto c = static_cast<std::size_t>(channel);
+    const double gain = std::exp(v[pluck_layout::gain_near + channel]);
+    for (std::size_t t = 0; t < takes.size(); ++t) {
+      std::vector<double>& recorded = takes[t].force_N[c];
+      const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate, newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
+      const auto first = std::min(recorded.size(), static_cast<std::size_t>(std::max(0.0, std::ceil(released))));
+      const stretching_pluck string(layout.string(v), v[layout.position(t)], newtons / tension, {limits.stop_Hz, limits.stop_Hz}, 120);
+      const auto moves = string.run(0, std::min(1.0, static_cast<double>(first) - released) / rate, 1 / rate, 1, recorded.size() - first);
+      for (std::size_t i = 0; i < first; ++i) recorded[i] -= gain * sensed_N * string.held_strain();
+      for (std::size_t i = first; i < recorded.size(); ++i) recorded[i] -= gain * sensed_N * moves.strain[i - first];
     }
   };
   return e;

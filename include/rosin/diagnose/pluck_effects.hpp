@@ -80,8 +80,8 @@ inline pluck_effect support_resonance_effect(const string_facts& f, int end) {
   pluck_effect e{"support-resonance", end, true,
                  {{"frequency_Hz", 20, f.highest_Hz, 1e-6, true}, {"q", 0.6, 3000, 1e-5, true}, {"per_mass_per_kg", 0, 1e5 / Z, 1e-4 / Z}, {"lag_s", -lag, lag, 1e-9, false, -1, false, true}}, {}, 2,
                  [Z, end](pluck_scene& s, const double* v, int) {
-                   const double heavier = std::max(0.5, 1 - 2 * std::numbers::pi * v[0] * v[3] / v[1]);  // by what the resistance lags
-                   s.ends[static_cast<std::size_t>(end)].modes.push_back({v[0] / std::sqrt(heavier), v[1] * std::sqrt(heavier), v[2] * Z / heavier});
+                   const double share = std::max(0.5, 1 - 2 * std::numbers::pi * v[0] * v[3] / v[1]);  // of the mass; the rest is what the resistance lags
+                   s.ends[static_cast<std::size_t>(end)].modes.push_back({v[0] / std::sqrt(share), v[1] * std::sqrt(share), v[2] * Z / share});
                    s.ends[static_cast<std::size_t>(end)].lag_s += v[3];
                  }};
   for (const double q : {6.0, 25.0, 100.0})

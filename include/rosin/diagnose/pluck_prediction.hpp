@@ -68,25 +68,34 @@ inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, doub
   return m;
 }
 
-/// Of a take that was not fitted: rms residual / rms recorded; the noise's share; samples.
-inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise) {
-  scene_data one{{held}, data.guess, data.options, pluck_layout({held}, data.options)};
-  const auto start = find_start(one.takes, data.guess);
-  if (!start) return {1, 0, 0};
-  Eigen::VectorXd v(one.layout.size());
+/// A take that was not fitted, by the model of those that were.
+struct seen_take {
+  scene_data data;          ///< the take by itself
+  scene_fit fit;            ///< release and strength free; of no effects' parameters where no release was found
+  fit_stage stage;          ///< what was looked at in the end
+  bool released = false;
+
+  [[nodiscard]] line_problem<scene_plucks> problem() const { return data.problem(fit.effects, fit.value, stage, {1, 1}); }
+};
+
+inline seen_take see(const scene_data& data, const scene_fit& fit, const pluck_take& held, double most_periods = 1e9) {
+  seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options)}, {}, {}, false};
+  const auto start = find_start(out.data.takes, data.guess);
+  if (!start) return out;
+  Eigen::VectorXd v(out.data.layout.size());
   v.head(pluck_layout::first_position) = fit.value.head(pluck_layout::first_position);
   std::size_t nearest = 0;
   for (std::size_t t = 1; t < data.takes.size(); ++t)
     if (std::abs(data.takes[t].position - held.position) < std::abs(data.takes[nearest].position - held.position)) nearest = t;
-  v[one.layout.position(0)] = fit.value[data.layout.position(nearest)] + held.position - data.takes[nearest].position;
+  v[out.data.layout.position(0)] = fit.value[data.layout.position(nearest)] + held.position - data.takes[nearest].position;
   const auto from = [&](int which) { return fit.value[data.layout.at(nearest, which)]; };
-  v[one.layout.at(0, pluck_layout::release)] = start->release_s[0] + 0.25 / start->fundamental_Hz - 0.25 / fit.value[0];
-  v[one.layout.at(0, pluck_layout::strength)] = std::log(held.strength_N);
-  v[one.layout.at(0, pluck_layout::offset_near)] = from(pluck_layout::offset_near);
-  v[one.layout.at(0, pluck_layout::offset_far)] = from(pluck_layout::offset_far);
+  v[out.data.layout.at(0, pluck_layout::release)] = start->release_s[0] + 0.25 / start->fundamental_Hz - 0.25 / fit.value[0];
+  v[out.data.layout.at(0, pluck_layout::strength)] = std::log(held.strength_N);
+  v[out.data.layout.at(0, pluck_layout::offset_near)] = from(pluck_layout::offset_near);
+  v[out.data.layout.at(0, pluck_layout::offset_far)] = from(pluck_layout::offset_far);
   std::vector<pluck_effect> effects;
   Eigen::Index at = data.layout.size();
-  double horizon = 1e9;
+  double horizon = std::min(most_periods, fit.horizon_periods);
   for (const pluck_effect& e : fit.effects) {
     pluck_effect mine = e;
     std::erase_if(mine.parameters, [](const effect_parameter& p) { return p.take > 0; });
@@ -98,14 +107,22 @@ inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& 
     at += static_cast<Eigen::Index>(e.parameters.size());
     effects.push_back(std::move(mine));
   }
-  std::vector<fit_stage> stages{{12, 8, false, freedom::release_only}, {1000, 12, true, freedom::release_only}, {1000, std::min(horizon, fit.horizon_periods), true, freedom::release_only}};
-  const scene_fit seen = fit_scene(one, effects, v, stages, {1e-3, 1e-3});
-  const auto problem = one.problem(effects, seen.value, stages.back(), {1, 1});
+  out.stage = {1000, horizon, true, freedom::release_only};
+  out.fit = fit_scene(out.data, effects, v, {{12, 8, false, freedom::release_only}, {1000, 12, true, freedom::release_only}, out.stage}, {1e-3, 1e-3});
+  out.released = true;
+  return out;
+}
+
+/// Of a take that was not fitted: rms residual / rms recorded; the noise's share; samples.
+inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise) {
+  const seen_take seen = see(data, fit, held);
+  if (!seen.released) return {1, 0, 0};
+  const auto problem = seen.problem();
   double power = 0, samples = 0;
   for (const auto& part : {problem.part(0, 0), problem.part(0, 1)})
     for (const auto& d : part.data) power += d.squaredNorm(), samples += static_cast<double>(d.size());
-  const double mean_square = (seen.quality.samples[0] + seen.quality.samples[1]) / std::max(1.0, samples);
-  return {seen.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power)), samples};
+  const double mean_square = (seen.fit.quality.samples[0] + seen.fit.quality.samples[1]) / std::max(1.0, samples);
+  return {seen.fit.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power)), samples};
 }
 
 /// What is left of a series without its mean and slope, squared and summed.

@@ -9,6 +9,7 @@ TEST_CASE("contact effects: a contact as declared is called so") {
   const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 91), b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 93);
   const auto found = rosin::contact_hypotheses({a.take(), b.take()}, contact_rigs::declared());
   CHECK(found.as_declared);
+  CHECK(rosin::beyond_doubt(found).empty());
   CHECK(found.stick_fluctuation < 0.01);
   CHECK(found.friction_residual < 0.02);
   CHECK(found.independent > 200);
@@ -28,6 +29,16 @@ TEST_CASE("contact effects: torsion that nobody declared comes first, and is all
   for (const auto& h : then.hypotheses) CHECK(h.effect != "torsion");
 }
 
+TEST_CASE("contact effects: torsion that the catalogue does not know shows all the same") {
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 95);
+  rosin::contact_model ignorant;
+  ignorant.included = {"torsion", "rod-resonance", "elasto-plastic-friction", "creep", "speed-ripple", "finite-contact-width", "normal-force-ripple", "thermal-friction"};
+  const auto found = rosin::contact_hypotheses({a.take()}, ignorant);
+  CHECK(found.hypotheses.empty());
+  CHECK(found.as_declared);
+  CHECK(rosin::beyond_doubt(found) == "stick-fluctuation");
+}
+
 TEST_CASE("contact effects: takes that tell nothing are left out, with a reason") {
   const std::vector<double> few(50, 0.1);
   rosin::contact_take take;
@@ -35,6 +46,7 @@ TEST_CASE("contact effects: takes that tell nothing are left out, with a reason"
   const auto found = rosin::contact_hypotheses({take}, {});
   CHECK(found.hypotheses.empty());
   CHECK(found.as_declared);
+  CHECK(rosin::beyond_doubt(found).empty());
   REQUIRE(found.warnings.size() == 1);
   CHECK(found.warnings[0].find("bow-9") == 0);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/diagnose/contact_slip_effects.hpp>
+#include <rosin/reconstruct/dc_level.hpp>
 
 #include <doctest/doctest.h>
 
@@ -26,6 +27,39 @@ TEST_CASE("contact slip effects: a normal force that is not steady shows in slip
   rosin::stick_bench again(takes, model);
   const rosin::slip_bench rest(again, takes);
   CHECK(rest.declared().residual() < 0.5 * bench.declared().residual());
+}
+
+TEST_CASE("contact slip effects: where sensors lost the mean force, strokes may be off by a constant, and a ripple's size holds that doubt") {
+  auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
+  slow.normal_Hz = fast.normal_Hz = 118;
+  slow.normal_relative = fast.normal_relative = 0.08;
+  auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 51), b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 53);
+  double level_N = 0.1;
+  for (auto* s : {&a, &b}) {
+    for (double& f : s->force) f -= level_N;
+    level_N = 0.16;
+  }
+  const auto look = [&](bool estimated) {
+    std::vector<rosin::contact_take> takes{a.take(), b.take()};
+    for (auto* s : {&a, &b}) {
+      auto& t = takes[s == &a ? 0 : 1];
+      const auto dc = rosin::estimate_dc_level(s->force, s->velocity, s->speed, s->normal);
+      REQUIRE(dc.available);
+      if (estimated)
+        for (double& f : s->force) f += dc.level_N;
+      t.level_sd_N = estimated ? dc.sd_N : 0;
+    }
+    rosin::stick_bench sticks(takes, contact_rigs::declared());
+    const rosin::slip_bench bench(sticks, takes);
+    return std::pair{rosin::normal_ripple_hypothesis(bench), bench.declared().residual()};
+  };
+  const auto lost = look(false), level = look(true);
+  const auto& size = level.first.parameters[1];
+  CHECK(level.first.gain > 60);
+  CHECK(std::abs(size.value - 0.08) < 2 * size.sd);
+  CHECK(size.sd > 0.1 * size.value);
+  CHECK(size.sd < 0.6 * size.value);
+  CHECK(level.second < lost.second);
 }
 
 TEST_CASE("contact slip effects: a velocity curve as declared gains by nothing") {

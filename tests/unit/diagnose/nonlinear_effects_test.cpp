@@ -29,7 +29,7 @@ TEST_CASE("a curved sensor is straightened exactly") {
 }
 
 TEST_CASE("a string that is not stretched rings as its partials do") {
-  const auto force = rosin::stretching_pluck(string, 0.3, 0.01, limits, 200).run(0, 3e-6, 1 / 128e3, 4, 2000);
+  const auto force = rosin::stretching_pluck(string, 0.3, 0.01, limits, 200).run(0, 3e-6, 1 / 128e3, 4, 2000).force;
   const auto lines = rosin::pluck_lines(string, 0.3, 0, limits, 200);
   for (const std::size_t i : {50U, 333U, 1999U})
     for (std::size_t c = 0; c < 2; ++c) {
@@ -44,7 +44,7 @@ TEST_CASE("a single mode under its own tension rises in pitch as Duffing's equat
   const rosin::ringing_string pure{100, 0, {1e9, 0, 0}, -1};
   const double h = 1 / 64e3, stretch = 0.5, slope = 0.02;
   const rosin::stretching_pluck one(pure, 0.5, slope, {150, 150}, 1);  // only the first partial
-  const auto force = one.run(stretch, 0, h, 1, 64000)[0];
+  const auto force = one.run(stretch, 0, h, 1, 64000).force[0];
   const double amplitude = slope * 2 / std::numbers::pi;
   int crossings = 0;
   double first = 0, last = 0;
@@ -79,10 +79,45 @@ TEST_CASE("a string with the mean stretch rings nearly as the stretched one does
   const auto all = [](double stop) { return rosin::band{stop, stop}; };
   const double relative = rosin::mean_stretch(string, 0.3, slope, stretch, 6);
   CHECK(relative > 0.002);
-  const auto stretched = rosin::stretching_pluck(string, 0.3, slope, all(50e3), 200).run(stretch, 0, sample_s, 4, 1900);
-  const auto mean = rosin::stretching_pluck(rosin::tightened(string, relative), 0.3, slope, all(50e3), 200).run(0, 0, sample_s, 4, 1900);
-  const auto slack = rosin::stretching_pluck(string, 0.3, slope, all(50e3), 200).run(0, 0, sample_s, 4, 1900);
+  const auto stretched = rosin::stretching_pluck(string, 0.3, slope, all(50e3), 200).run(stretch, 0, sample_s, 4, 1900).force;
+  const auto mean = rosin::stretching_pluck(rosin::tightened(string, relative), 0.3, slope, all(50e3), 200).run(0, 0, sample_s, 4, 1900).force;
+  const auto slack = rosin::stretching_pluck(string, 0.3, slope, all(50e3), 200).run(0, 0, sample_s, 4, 1900).force;
   double from_mean = 0, from_slack = 0;
   for (std::size_t i = 0; i < mean[0].size(); ++i) from_mean += std::pow(stretched[0][i] - mean[0][i], 2), from_slack += std::pow(stretched[0][i] - slack[0][i], 2);
   CHECK(std::sqrt(from_mean) < 0.15 * std::sqrt(from_slack));
+}
+
+TEST_CASE("the strain of a released string: as much as was held, and half of it once a period has mixed what moves with what is stretched") {
+  const rosin::ringing_string ideal{500, 0, {1e9, 0, 0}, -1};
+  const double rate = 200e3, slope = 0.01, at = 0.3;
+  const rosin::stretching_pluck pluck(ideal, at, slope, {90e3, 90e3}, 400);
+  // Held at 0.3: slopes F (1 - at) / T and -F at / T.
+  const double held = 0.5 * slope * slope * (at * (1 - at) * (1 - at) + (1 - at) * at * at);
+  CHECK(pluck.held_strain() == doctest::Approx(held).epsilon(0.01));
+  const auto strain = pluck.run(0, 0, 1 / rate, 1, 400).strain;  // one period
+  CHECK(strain[0] == doctest::Approx(held).epsilon(0.01));
+  double mean = 0;
+  for (const double s : strain) mean += s / 400;
+  CHECK(mean == doctest::Approx(held / 2).epsilon(0.02));
+  for (std::size_t i = 0; i < 200; ++i) CHECK(strain[i] == doctest::Approx(strain[i + 200]).epsilon(0.01).scale(held));  // twice a period
+}
+
+TEST_CASE("what a sensor feels of the tension is taken out, before the release and after") {
+  const auto e = rosin::phantom_partials_effect(facts, limits, 1);
+  std::vector<rosin::pluck_take> takes(1);
+  takes[0].rate_Hz = 128e3, takes[0].position = 0.3;
+  takes[0].force_N = {std::vector<double>(3000, 0.0), std::vector<double>(3000, 0.0)};
+  const rosin::pluck_layout layout(takes, {});
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
+  v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002, v[layout.at(0, 1)] = std::log(0.8);
+  e.undo(takes, layout, v, 5e3);
+  const auto& far = takes[0].force_N[1];
+  const double tension = facts.impedance_Ns_m * 2 * facts.length_m * facts.fundamental_Hz, held = 0.5 * 0.3 * 0.7 * std::pow(0.8 / tension, 2) * 5e3;
+  CHECK(far[10] == doctest::Approx(-held).epsilon(0.02));
+  CHECK(far[257] == doctest::Approx(-held).epsilon(0.05));  // at once after the release
+  double least = 0, most = -1;
+  for (std::size_t i = 400; i < 800; ++i) least = std::min(least, far[i]), most = std::max(most, far[i]);
+  CHECK(most > -0.06 / 0.21 * held);  // slopes of 0.2 and -0.3 a quarter period on, of 0.7 and -0.3 before
+  CHECK(least < -0.8 * held);
+  for (const double x : takes[0].force_N[0]) CHECK(x == 0);
 }

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+//
+// What is wrong with single takes: samples that were lost, a pluck that contradicts the others, one that was made elsewhere.
+//
+#include "diagnose_parts.hpp"
+
+namespace tool {
+
+namespace {
+
+/// Rms residual / rms recorded of a take with and without what lies between two instants (and what a band's filter makes of them).
+std::array<double, 2> with_and_without(const rosin::pluck_diagnosis& p, const rosin::pluck_take& take, double from_s, double to_s) {
+  constexpr double blurred = 80;
+  const rosin::detail::take_and_model t = rosin::detail::compare_late(p, take);
+  double recorded = 0, off = 0, inside = 0;
+  for (std::size_t c = 0; c < 2; ++c)
+    for (Eigen::Index i = 0; i < t.recorded[c].size(); ++i) {
+      const double square = std::pow(t.recorded[c][i] - t.model[c][i], 2), at = t.begin_s + static_cast<double>(i) / t.rate_Hz;
+      recorded += std::pow(t.recorded[c][i], 2), off += square;
+      if (at > from_s - blurred / t.rate_Hz && at < to_s + blurred / t.rate_Hz) inside += square;
+    }
+  return {std::sqrt(off / std::max(1e-300, recorded)), std::sqrt((off - inside) / std::max(1e-300, recorded))};
+}
+
+missing_effect lost(const std::string& take, const std::string& channel, double samples, double time_s) {
+  missing_effect m;
+  m.effect = "dropouts", m.channel = channel;
+  m.parameters = {{"samples", samples, 0}, {"time_s", time_s, 0}};
+  m.statement = take + (channel.empty() ? "" : ", channel " + channel) + ": " + rosin::detail::figure(samples, "%.0f") + " samples were lost, from " +
+                rosin::detail::figure(time_s, "%.4f") + " s on.";
+  return m;
+}
+
+}  // namespace
+
+odd_take described(const rosin::odd_pluck& odd) {
+  odd_take out{odd.take.name, {}, odd.before, odd.floor, {}, odd.time_s, {}};
+  const double others_Hz = odd.others.best.value[rosin::pluck_layout::fundamental], apart = odd.own_fundamental_Hz / others_Hz - 1;
+  out.statement = odd.take.name + " contradicts the other plucks: ";
+  if (odd.lost) {
+    out.after = odd.after;
+    out.lost = lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s);
+    out.statement += rosin::detail::figure(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
+  } else if (odd.own_fundamental_Hz > 0 && std::abs(apart) > 1e-5) {
+    out.statement += "by itself it rings at " + rosin::detail::figure(odd.own_fundamental_Hz, "%.6g") + " Hz, the others at " + rosin::detail::figure(others_Hz, "%.6g") +
+                     " Hz; another tuning or another string?";
+  } else {
+    out.statement += "off from " + rosin::detail::figure(odd.time_s[0], "%.4f") + " s on";
+  }
+  if (odd.strongest && !odd.lost) out.statement += "; it is the strongest: something that only large motion meets?";
+  return out;
+}
+
+void add_odd(const odd_take& odd, rig_diagnosis& d) {
+  d.take = odd.name, d.channel.clear(), d.time_s = odd.time_s, d.band_Hz.reset();
+  d.before = odd.before, d.after = odd.after.value_or(odd.before), d.noise_floor = odd.floor;
+  d.residual_over_noise = odd.floor > 0 ? odd.before / odd.floor : 0;
+  d.held_out = {odd.name};
+  if (odd.lost) d.missing.push_back(*odd.lost), d.ranking.insert(d.ranking.begin(), {{"dropouts"}, 0.0});
+}
+
+void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& p, provenance& from, rig_diagnosis& d) {
+  for (const rosin::take& take : rig.takes) {
+    const auto read = read_take(rig, take, from);
+    const auto position = rig.position_of(take);
+    if (!read) continue;
+    for (const rosin::finding& f : read->check.findings) {
+      if (f.kind != "dropouts" || (f.channel != "near" && f.channel != "far")) continue;
+      d.missing.push_back(lost(take.name, f.channel, std::round((f.end_s - f.start_s) * read->signals.sample_rate_Hz), f.start_s));
+      if (!d.take.empty()) continue;
+      d.take = take.name, d.channel = f.channel, d.time_s = {f.start_s, f.end_s};
+      d.after = d.before;
+      if (take.kind != rosin::take_kind::pluck || !position || !take.force_N) continue;
+      const auto [before, after] = with_and_without(p, {take.name, read->signals.sample_rate_Hz, {read->signals.near_N(), read->signals.far_N()}, *take.force_N,
+                                                        rosin::force_tolerance_of(take), *position}, f.start_s, f.end_s);
+      d.before = before, d.after = after, d.held_out = {take.name};
+      d.residual_over_noise = d.noise_floor > 0 ? before / d.noise_floor : 0;
+    }
+  }
+}
+
+void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
+  constexpr double least = 0.02, clearly = 6;
+  const double allowed = std::max(least, values.position ? clearly * values.position->sd : 0.0);
+  for (std::size_t t = 0; t < p.data.takes.size(); ++t) {
+    const Eigen::Index at = p.data.layout.position(t);
+    const double declared = p.data.takes[t].position, found = p.best.value[at];
+    if (!(std::abs(found - declared) > allowed)) continue;
+    missing_effect m;
+    m.effect = "pluck-position", m.position = found;
+    m.parameters = {{"position", found, p.best.sd[at]}};
+    m.statement = "The string was plucked at " + rosin::detail::figure(found, "%.4f") + " of its length, not at " + rosin::detail::figure(declared, "%.4f") + ".";
+    d.missing.push_back(m);
+    if (!d.take.empty()) return;
+    rosin::scene_fit as_declared = p.best;
+    as_declared.value[at] = declared;
+    const auto seen = rosin::detail::predicted(p.data, as_declared, p.data.takes[t], rosin::detail::rms_of(p.best.quality.noise));
+    d.take = p.data.takes[t].name, d.before = seen[0], d.after = p.after;
+    d.residual_over_noise = d.noise_floor > 0 ? d.before / d.noise_floor : 0;
+    return;
+  }
+}
+
+}  // namespace tool

@@ -1,0 +1,152 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Where plucks leave something unexplained: is it one of them that contradicts the others? Another string, another tuning, an obstacle
+// that only the strongest meets, samples that a recorder lost. Each is left out in turn; if the declared model fits the others far
+// better without one, these are diagnosed by themselves, and if nothing is left unexplained there, that one is the odd one. It is
+// predicted like a take that was held out, and searched for an instant from which on it runs ahead by a whole number of samples.
+//
+#pragma once
+
+#include <rosin/diagnose/pluck_diagnosis.hpp>
+
+namespace rosin {
+
+/// Frames that a recorder left out.
+struct lost_samples {
+  std::size_t count = 0;
+  double time_s = 0;  ///< the first that is missing, from the take's beginning
+};
+
+/// A pluck that contradicts the others.
+struct odd_pluck {
+  pluck_take take;
+  pluck_diagnosis others;
+  double own_fundamental_Hz = 0;     ///< of this pluck fitted by itself; 0: it cannot be
+  bool strongest = false;
+  std::array<double, 2> time_s{};    ///< from when on it is off: a window of half a period
+  double before = 0, floor = 0;      ///< rms residual / rms recorded, as the others predict it; the noise's share
+  std::optional<lost_samples> lost;  ///< if that is what is odd
+  double after = 0;                  ///< with the loss
+};
+
+namespace detail {
+
+/// The part of a take after its release, and what it should be, in the band.
+struct take_and_model {
+  std::array<Eigen::VectorXd, 2> recorded, model;
+  double begin_s = 0, rate_Hz = 0;
+};
+
+/// By release and strength of the first periods: what comes later is not to bend them.
+inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& take) {
+  constexpr double first_periods = 12;
+  seen_take seen = see(d.data, d.best, take, first_periods);
+  if (!seen.released) return {};
+  seen.stage.periods = d.best.horizon_periods;
+  const auto problem = seen.problem();
+  const auto left = residual_of(problem, seen.fit.value, 0);
+  take_and_model out{problem.part(0, 1).data, {}, problem.part(0, 1).begin_s, take.rate_Hz};
+  for (std::size_t c = 0; c < 2; ++c) out.model[c] = out.recorded[c] - left[c];
+  return out;
+}
+
+/// Power of what a lost piece leaves: samples before `from` against the model, those `gap` behind it against the model `lag` later.
+struct loss_search {
+  std::size_t from = 0, lag = 0;
+  double power = 1e300, samples = 0;
+};
+
+inline loss_search find_loss(const take_and_model& t, std::size_t most_lag, std::size_t gap) {
+  const auto n = static_cast<std::size_t>(t.recorded[0].size());
+  loss_search best;
+  const auto error = [&](std::size_t i, std::size_t lag) {
+    double sum = 0;
+    for (std::size_t c = 0; c < 2; ++c) sum += std::pow(t.recorded[c][static_cast<Eigen::Index>(i)] - t.model[c][static_cast<Eigen::Index>(i + lag)], 2);
+    return sum;
+  };
+  std::vector<double> before(n + 1, 0.0), behind(n + 1, 0.0);
+  for (std::size_t i = 0; i < n; ++i) before[i + 1] = before[i] + error(i, 0);
+  for (std::size_t lag = 1; lag <= most_lag && lag + 4 * gap < n; ++lag) {
+    const std::size_t end = n - lag;
+    behind[end] = 0;
+    for (std::size_t i = end; i-- > 0;) behind[i] = behind[i + 1] + error(i, lag);
+    for (std::size_t from = 0; from + 2 * gap < end; ++from)
+      if (const double samples = static_cast<double>(2 * (end - gap)), power = before[from] + behind[from + gap]; power / samples < best.power)
+        best = {from, lag, power / samples, samples};
+  }
+  return best;
+}
+
+/// A whole number of samples that is missing from some instant on, where that accounts for nearly all.
+inline void search_loss(odd_pluck& odd) {
+  constexpr std::size_t most_lag = 1024, gap = 80;  // a band's filter blurs the gap
+  const take_and_model t = compare_late(odd.others, odd.take);
+  if (t.recorded[0].size() < static_cast<Eigen::Index>(8 * gap)) return;
+  const loss_search found = find_loss(t, most_lag, gap);
+  double recorded = 0, off = 0, samples = 0;
+  for (std::size_t c = 0; c < 2; ++c) {
+    recorded += t.recorded[c].squaredNorm(), off += (t.recorded[c] - t.model[c]).squaredNorm(), samples += static_cast<double>(t.recorded[c].size());
+  }
+  if (!(found.power < 0.02 * off / samples)) return;
+  odd.lost = lost_samples{found.lag, t.begin_s + static_cast<double>(found.from) / t.rate_Hz};
+  odd.after = std::sqrt(found.power * samples / recorded);
+}
+
+/// The first half period in which a take is off by a tenth of the most.
+inline std::array<double, 2> first_off(const take_and_model& t, double fundamental_Hz) {
+  const auto window = static_cast<Eigen::Index>(std::max(8.0, 0.5 * t.rate_Hz / fundamental_Hz));
+  std::vector<double> power;
+  for (Eigen::Index i = 0; i + window <= t.recorded[0].size(); i += window) {
+    double sum = 0;
+    for (std::size_t c = 0; c < 2; ++c) sum += (t.recorded[c] - t.model[c]).segment(i, window).squaredNorm();
+    power.push_back(sum);
+  }
+  if (power.empty()) return {0, 0};
+  const double enough = 0.01 * *std::max_element(power.begin(), power.end());
+  const auto first = std::find_if(power.begin(), power.end(), [&](double p) { return p >= enough; }) - power.begin();
+  const double begin = t.begin_s + static_cast<double>(first * window) / t.rate_Hz;
+  return {begin, begin + static_cast<double>(window) / t.rate_Hz};
+}
+
+/// What the declared model leaves of the worst of these takes; 1 where it cannot be fitted.
+inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {
+  const auto fit = fit_plucks(takes, guess, options, 0.95);
+  return fit ? worst(*fit) : 1.0;
+}
+
+}  // namespace detail
+
+/// The odd one of at least three plucks (fitted and held out), if there is one.
+[[nodiscard]] inline std::optional<odd_pluck> find_odd_pluck(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
+                                                             const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for) {
+  constexpr double far_better = 0.3, clearly_off = 3;
+  std::vector<pluck_take> all = takes;
+  all.insert(all.end(), held.begin(), held.end());
+  if (all.size() < 3) return std::nullopt;
+  const auto without = [](std::vector<pluck_take> from, std::size_t i) {
+    if (i < from.size()) from.erase(from.begin() + static_cast<std::ptrdiff_t>(i));
+    return from;
+  };
+  std::size_t which = 0;
+  double least = 1;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (const double left = detail::worst_of(without(all, i), guess, options); left < least) least = left, which = i;
+  if (!(least < far_better * detail::worst_of(all, guess, options))) return std::nullopt;
+  std::vector<pluck_take> fitted = without(takes, which), kept = which < takes.size() ? held : without(held, which - takes.size());
+  if (kept.empty() && fitted.size() > 1) kept.push_back(std::move(fitted.back())), fitted.pop_back();
+  if (fitted.empty()) std::swap(fitted, kept);
+  auto others = diagnose_plucks(fitted, kept, guess, options, catalogue_for);
+  if (!others || !others->explained) return std::nullopt;
+  odd_pluck odd{all[which], *std::move(others), 0, true, {}, 0, 0, {}, 0};
+  const auto seen = detail::predicted(odd.others.data, odd.others.best, odd.take, detail::rms_of(odd.others.best.quality.noise));
+  odd.before = seen[0], odd.floor = seen[1];
+  if (!(odd.before > clearly_off * odd.floor)) return std::nullopt;
+  for (const pluck_take& take : all) odd.strongest = odd.strongest && take.strength_N <= odd.take.strength_N;
+  if (const auto own = fit_plucks({odd.take}, guess, options, 0.95)) odd.own_fundamental_Hz = own->value[pluck_layout::fundamental];
+  if (const auto t = detail::compare_late(odd.others, odd.take); t.rate_Hz > 0) odd.time_s = detail::first_off(t, odd.others.best.value[pluck_layout::fundamental]);
+  detail::search_loss(odd);
+  return odd;
+}
+
+}  // namespace rosin
