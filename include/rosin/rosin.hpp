@@ -159,6 +159,7 @@
 #include <rosin/simulate/wave_string.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
 
+#include <rosin/diagnose/clock_drift_effect.hpp>
 #include <rosin/diagnose/contact_effects.hpp>
 #include <rosin/diagnose/contact_ripple.hpp>
 #include <rosin/diagnose/contact_slip_effects.hpp>
@@ -173,6 +174,7 @@
 #include <rosin/diagnose/loaded_motion.hpp>
 #include <rosin/diagnose/lost_level.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
+#include <rosin/diagnose/odd_pluck.hpp>
 #include <rosin/diagnose/pickup_diagnosis.hpp>
 #include <rosin/diagnose/pickup_effects.hpp>
 #include <rosin/diagnose/pickup_findings.hpp>

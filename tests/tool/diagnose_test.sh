@@ -62,6 +62,26 @@ holds plain.json '$d->{verdict} eq "no-mismatch" && !@{$d->{missing}} && !define
   'about($d->{fit}{before}, $d->{fit}{noise_floor}, 0.2)'
 expect 0 validate plain.json
 
+# Samples that a recorder left out of one pluck: it contradicts the others, and that is why.
+make cut short
+cut_frames() { # FILE FIRST COUNT: of a WAV file with a header of 44 bytes and frames of 4
+  perl -e 'local $/; open my $f, "+<:raw", $ARGV[0] or die; my $all = <$f>; substr($all, 44 + 4 * $ARGV[1], 4 * $ARGV[2]) = "";
+    substr($all, 4, 4) = pack "V", length($all) - 8; substr($all, 40, 4) = pack "V", length($all) - 44; seek $f, 0, 0; print $f $all; truncate $f, length $all' "$@"
+}
+cut_frames cut/pluck-1.wav 700 5
+expect 0 diagnose cut --json cut.json
+says "pluck-1 contradicts the other plucks: 5 samples are missing in it"
+holds cut.json "$explained" '$m->{effect} eq "dropouts" && value("samples") == 5' 'about(value("time_s"), 700 / 16000, 0.05)' '$d->{mismatch}{take} eq "pluck-1"' \
+  '$d->{fit}{before} > 10 * $d->{fit}{noise_floor} && $d->{fit}{after} < 1.3 * $d->{fit}{noise_floor}'
+expect 0 validate cut.json
+
+# The plucks were made elsewhere than the rig file says.
+make moved short
+perl -i -pe 's/^position = 0\.[0-9]+/position = 0.34/m' moved/rig.toml
+expect 0 diagnose moved --json moved.json
+says "The string was plucked at 0.298"
+holds moved.json "$explained" '$m->{effect} eq "pluck-position"' 'abs(value("position") - 0.2987) < 1e-3' '$d->{fit}{before} > 10 * $d->{fit}{noise_floor}'
+
 # One channel that knows of no newton goes through the same door: partials alone, and what is declared is all there is.
 make heard
 perl -i -0pe 's/^near.*\n//m; s/^far.*/coil = { index = 1, quantity = "string-velocity", position = 0.2 }/m' heard/rig.toml

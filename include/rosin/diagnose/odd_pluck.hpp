@@ -40,7 +40,7 @@ struct take_and_model {
 
 /// By release and strength of the first periods: what comes later is not to bend them.
 inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& take) {
-  constexpr double first_periods = 12;
+  constexpr double first_periods = 5;
   seen_take seen = see(d.data, d.best, take, first_periods);
   if (!seen.released) return {};
   seen.stage.periods = d.best.horizon_periods;
@@ -51,10 +51,10 @@ inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& t
   return out;
 }
 
-/// Power of what a lost piece leaves: samples before `from` against the model, those `gap` behind it against the model `lag` later.
+/// What a lost piece leaves: samples before `from` against the model, those a gap behind it against the model `lag` later.
 struct loss_search {
   std::size_t from = 0, lag = 0;
-  double power = 1e300, samples = 0;
+  double mean_square = 1e300;
 };
 
 inline loss_search find_loss(const take_and_model& t, std::size_t most_lag, std::size_t gap) {
@@ -72,8 +72,7 @@ inline loss_search find_loss(const take_and_model& t, std::size_t most_lag, std:
     behind[end] = 0;
     for (std::size_t i = end; i-- > 0;) behind[i] = behind[i + 1] + error(i, lag);
     for (std::size_t from = 0; from + 2 * gap < end; ++from)
-      if (const double samples = static_cast<double>(2 * (end - gap)), power = before[from] + behind[from + gap]; power / samples < best.power)
-        best = {from, lag, power / samples, samples};
+      if (const double mean = (before[from] + behind[from + gap]) / static_cast<double>(2 * (end - gap)); mean < best.mean_square) best = {from, lag, mean};
   }
   return best;
 }
@@ -85,15 +84,14 @@ inline void search_loss(odd_pluck& odd) {
   if (t.recorded[0].size() < static_cast<Eigen::Index>(8 * gap)) return;
   const loss_search found = find_loss(t, most_lag, gap);
   double recorded = 0, off = 0, samples = 0;
-  for (std::size_t c = 0; c < 2; ++c) {
+  for (std::size_t c = 0; c < 2; ++c)
     recorded += t.recorded[c].squaredNorm(), off += (t.recorded[c] - t.model[c]).squaredNorm(), samples += static_cast<double>(t.recorded[c].size());
-  }
-  if (!(found.power < 0.02 * off / samples)) return;
+  if (!(found.mean_square < 0.02 * off / samples)) return;
   odd.lost = lost_samples{found.lag, t.begin_s + static_cast<double>(found.from) / t.rate_Hz};
-  odd.after = std::sqrt(found.power * samples / recorded);
+  odd.after = std::sqrt(found.mean_square * samples / recorded);
 }
 
-/// The first half period in which a take is off by a tenth of the most.
+/// The first half period in which a take is off by a tenth (in amplitude) of the most.
 inline std::array<double, 2> first_off(const take_and_model& t, double fundamental_Hz) {
   const auto window = static_cast<Eigen::Index>(std::max(8.0, 0.5 * t.rate_Hz / fundamental_Hz));
   std::vector<double> power;
@@ -109,10 +107,10 @@ inline std::array<double, 2> first_off(const take_and_model& t, double fundament
   return {begin, begin + static_cast<double>(window) / t.rate_Hz};
 }
 
-/// What the declared model leaves of the worst of these takes; 1 where it cannot be fitted.
+/// What the declared model leaves of the worst of these takes; 1 where it cannot be fitted to all of their decay.
 inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {
   const auto fit = fit_plucks(takes, guess, options, 0.95);
-  return fit ? worst(*fit) : 1.0;
+  return fit && fit->horizon_periods > 1e8 ? worst(*fit) : 1.0;
 }
 
 }  // namespace detail

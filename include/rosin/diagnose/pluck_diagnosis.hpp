@@ -174,8 +174,10 @@ inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<plu
   d.mismatched = d.mismatched && !d.best.effects.empty();
 }
 
-/// Before and after on takes that were not fitted, and whether that is an explanation.
-inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool modulated) {
+/// Before and after on takes that were not fitted, and whether that is an explanation. `noise_seen`: before the releases as well; much noise
+/// that nothing else bears out may be what the model leaves.
+inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool noise_seen, bool modulated) {
+  constexpr double much_noise = 0.05;
   scene_fit plain = d.base;
   plain.horizon_periods = d.best.horizon_periods;
   for (const pluck_take& take : judged) {
@@ -186,8 +188,9 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   for (double* x : {&d.before, &d.after, &d.floor}) *x = std::sqrt(*x / static_cast<double>(judged.size()));
   const auto beyond_noise = [&](double x) { return std::sqrt(std::max(0.0, x * x - d.floor * d.floor)); };
   const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
-  const bool complete = (left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, 0.12 * was);
-  d.mismatched = d.mismatched || left > 1.5 || modulated || was > 0.6 * d.floor;
+  const bool doubtful = !noise_seen && d.floor > much_noise;
+  const bool complete = !doubtful && ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, 0.12 * was));
+  d.mismatched = d.mismatched || left > 1.5 || modulated || doubtful || was > 0.6 * d.floor;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   if (d.explained || excess <= 0.5 * was) return;
   d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it
@@ -209,11 +212,11 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   detail::effect_search search(d, all);
   search.run(most_effects);
   detail::drop_what_is_not_predicted(d, held, search.noise());
-  const std::array<double, 2> still = detail::noise_before_release(d.data, d.best);
+  const detail::seen_noise still = detail::noise_before_release(d.data, d.best);
   const bool modulated = detail::is_noisier(d.best.quality.noise, still);
-  const double noise = modulated ? detail::rms_of(still) : search.noise();
+  const double noise = modulated ? detail::rms_of(still.rms_N) : search.noise();
   d.mismatch = detail::locate(d.data, d.base, noise);
-  detail::judge(d, held.empty() ? takes : held, noise, modulated);
+  detail::judge(d, held.empty() ? takes : held, noise, still.samples > 0, modulated);
   return d;
 }
 

@@ -78,6 +78,7 @@ struct seen_take {
   [[nodiscard]] line_problem<scene_plucks> problem() const { return data.problem(fit.effects, fit.value, stage, {1, 1}); }
 };
 
+/// By its first `most_periods`.
 inline seen_take see(const scene_data& data, const scene_fit& fit, const pluck_take& held, double most_periods = 1e9) {
   seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options)}, {}, {}, false};
   const auto start = find_start(out.data.takes, data.guess);
@@ -108,7 +109,7 @@ inline seen_take see(const scene_data& data, const scene_fit& fit, const pluck_t
     effects.push_back(std::move(mine));
   }
   out.stage = {1000, horizon, true, freedom::release_only};
-  out.fit = fit_scene(out.data, effects, v, {{12, 8, false, freedom::release_only}, {1000, 12, true, freedom::release_only}, out.stage}, {1e-3, 1e-3});
+  out.fit = fit_scene(out.data, effects, v, {{12, std::min(8.0, horizon), false, freedom::release_only}, {1000, std::min(12.0, horizon), true, freedom::release_only}, out.stage}, {1e-3, 1e-3});
   out.released = true;
   return out;
 }
@@ -132,27 +133,36 @@ inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& 
   return (level - t * (t.dot(level) / t.squaredNorm())).squaredNorm();
 }
 
-/// Noise per sample of white noise, N, by what the recordings show before the release beside the steady force; 0 where that is too short.
-inline std::array<double, 2> noise_before_release(const scene_data& data, const scene_fit& fit) {
-  constexpr double least_samples = 200;
-  const auto problem = data.problem(fit.effects, fit.value, {1000, fit.horizon_periods, true, freedom::all}, {1, 1});
-  std::array<double, 2> power{}, out{};
+/// White noise of each channel, N, and how many independent samples of it were seen.
+struct seen_noise {
+  std::array<double, 2> rms_N{};
   double samples = 0;
+};
+
+/// What the recordings show before the release beside the steady force; nothing where that is too short.
+inline seen_noise noise_before_release(const scene_data& data, const scene_fit& fit) {
+  constexpr double least_samples = 30;
+  const auto problem = data.problem(fit.effects, fit.value, {1000, fit.horizon_periods, true, freedom::all}, {1, 1});
+  std::array<double, 2> power{};
+  seen_noise out;
   for (std::size_t t = 0; t < problem.takes(); ++t) {
     const auto& held = problem.part(t, 0);
     double passed = 0;  // the share of white noise that the band lets through
     for (int i = 0; i < 1000; ++i) passed += std::pow(problem.limits()(problem.rate_Hz(t) * (i + 0.5) / 2000), 2) / 1000;
-    samples += static_cast<double>(held.count()) * passed;
+    out.samples += static_cast<double>(held.count()) * passed;
     for (std::size_t c = 0; c < 2; ++c) power[c] += power_without_trend(held.data[c]);
   }
-  for (std::size_t c = 0; c < 2; ++c) out[c] = samples > least_samples ? std::sqrt(power[c] / samples) : 0;
+  if (!(out.samples > least_samples)) return {};
+  for (std::size_t c = 0; c < 2; ++c) out.rms_N[c] = std::sqrt(power[c] / out.samples);
   return out;
 }
 
-/// What modulates partials - a clock that is not steady, bursts - passes for noise among the lines, but not before the release.
-[[nodiscard]] inline bool is_noisier(const std::array<double, 2>& ringing, const std::array<double, 2>& still) {
-  constexpr double much = 1.3;
-  return (still[0] > 0 && ringing[0] > much * still[0]) || (still[1] > 0 && ringing[1] > much * still[1]);
+/// What modulates partials - a clock that is not steady, bursts - passes for noise among the lines, but not before the release. By three
+/// tenths, and four standard deviations of what was seen there.
+[[nodiscard]] inline bool is_noisier(const std::array<double, 2>& ringing, const seen_noise& still) {
+  if (!(still.samples > 0)) return false;
+  const double much = std::max(1.3, 1 + 4 / std::sqrt(2 * still.samples));
+  return ringing[0] > much * still.rms_N[0] || ringing[1] > much * still.rms_N[1];
 }
 
 [[nodiscard]] inline double rms_of(const std::array<double, 2>& x) { return std::sqrt((x[0] * x[0] + x[1] * x[1]) / 2); }

@@ -14,9 +14,9 @@ TEST_CASE("noise is told from what the recordings show before the release") {
   rosin::scene_fit fit;
   fit.value = v, fit.horizon_periods = 1e9;
   const auto before = rosin::detail::noise_before_release(data, fit);
-  for (const double n : before) CHECK(n == doctest::Approx(noise_N).epsilon(0.12));  // some 600 samples
+  for (const double n : before.rms_N) CHECK(n == doctest::Approx(noise_N).epsilon(0.12));  // some 600 samples
   fit.value[layout.at(0, rosin::pluck_layout::strength)] += 0.1;  // how strong the steady force was is another matter
-  CHECK(rosin::detail::noise_before_release(data, fit)[0] == doctest::Approx(before[0]));
+  CHECK(rosin::detail::noise_before_release(data, fit).rms_N[0] == doctest::Approx(before.rms_N[0]));
 }
 
 TEST_CASE("a record that begins with the release says nothing of its noise, and then nothing is called noisier") {
@@ -27,8 +27,14 @@ TEST_CASE("a record that begins with the release says nothing of its noise, and 
   rosin::scene_fit fit;
   fit.value = v, fit.horizon_periods = 1e9;
   const auto before = rosin::detail::noise_before_release({takes, {.fundamental_Hz = 660}, {}, layout}, fit);
-  CHECK(before[0] == 0);
+  CHECK(before.samples == 0);
   CHECK_FALSE(rosin::detail::is_noisier({1, 1}, before));
-  CHECK(rosin::detail::is_noisier({1e-3, 1.4e-3}, {1e-3, 1e-3}));
-  CHECK_FALSE(rosin::detail::is_noisier({1e-3, 1.1e-3}, {1e-3, 1e-3}));
+}
+
+TEST_CASE("noisier is by three tenths, and by more where little was seen") {
+  const rosin::detail::seen_noise well{{1e-3, 1e-3}, 600}, hardly{{1e-3, 1e-3}, 40};
+  CHECK(rosin::detail::is_noisier({1e-3, 1.4e-3}, well));
+  CHECK_FALSE(rosin::detail::is_noisier({1e-3, 1.1e-3}, well));
+  CHECK_FALSE(rosin::detail::is_noisier({1e-3, 1.4e-3}, hardly));
+  CHECK(rosin::detail::is_noisier({1.6e-3, 1e-3}, hardly));
 }
