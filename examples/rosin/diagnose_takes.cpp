@@ -22,10 +22,10 @@ std::array<double, 2> with_and_without(const rosin::pluck_diagnosis& p, const ro
   return {std::sqrt(off / std::max(1e-300, recorded)), std::sqrt((off - inside) / std::max(1e-300, recorded))};
 }
 
-missing_effect lost(const std::string& take, const std::string& channel, double samples, double time_s) {
+missing_effect lost(const std::string& take, const std::string& channel, double samples, double time_s, double time_sd_s = 0) {
   missing_effect m;
   m.effect = "dropouts", m.channel = channel;
-  m.parameters = {{"samples", samples, 0}, {"time_s", time_s, 0}};
+  m.parameters = {{"samples", samples, 0}, {"time_s", time_s, time_sd_s}};
   m.statement = take + (channel.empty() ? "" : ", channel " + channel) + ": " + rosin::detail::figure(samples, "%.0f") + " samples were lost, from " +
                 rosin::detail::figure(time_s, "%.4f") + " s on.";
   return m;
@@ -39,7 +39,7 @@ odd_take described(const rosin::odd_pluck& odd) {
   out.statement = odd.take.name + " contradicts the other plucks: ";
   if (odd.lost) {
     out.after = odd.after;
-    out.lost = lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s);
+    out.lost = lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s);
     out.statement += rosin::detail::figure(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
   } else if (odd.own_fundamental_Hz > 0 && std::abs(apart) > 1e-5) {
     out.statement += "by itself it rings at " + rosin::detail::figure(odd.own_fundamental_Hz, "%.6g") + " Hz, the others at " + rosin::detail::figure(others_Hz, "%.6g") +

@@ -15,7 +15,7 @@ namespace rosin {
 /// Frames that a recorder left out.
 struct lost_samples {
   std::size_t count = 0;
-  double time_s = 0;  ///< the first that is missing, from the take's beginning
+  double time_s = 0, sd_s = 0;  ///< of the first that is missing, from the take's beginning
 };
 
 /// A pluck that contradicts the others.
@@ -87,7 +87,7 @@ inline void search_loss(odd_pluck& odd) {
   for (std::size_t c = 0; c < 2; ++c)
     recorded += t.recorded[c].squaredNorm(), off += (t.recorded[c] - t.model[c]).squaredNorm(), samples += static_cast<double>(t.recorded[c].size());
   if (!(found.mean_square < 0.02 * off / samples)) return;
-  odd.lost = lost_samples{found.lag, t.begin_s + static_cast<double>(found.from) / t.rate_Hz};
+  odd.lost = lost_samples{found.lag, t.begin_s + (static_cast<double>(found.from) + 0.5 * gap) / t.rate_Hz, 0.25 * gap / t.rate_Hz};
   odd.after = std::sqrt(found.mean_square * samples / recorded);
 }
 
