@@ -51,6 +51,7 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
   auto plucks = plucks_of(rig, values, from);
   if (!plucks) return rosin::failure{plucks.error()};
   const json& calibration = document["calibration"];
+  if (!calibration.contains("fundamental_Hz")) return wrong("calibration has no \"fundamental_Hz\"");
   keep_calibrated(calibration, *plucks);
   if (plucks->takes.empty()) return wrong("calibration has none of the plucks that " + rig.file + " names");
   corrected_model out{path, {}, 0, {}, {}, from};

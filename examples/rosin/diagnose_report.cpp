@@ -45,7 +45,7 @@ figure residual_figure(const residual_picture& r, const residual_series& s, cons
   figure f;
   for (std::size_t c = 0; c < 2; ++c) {
     panel p = residual_panel(r, s, c, half_height_of(r));
-    if (d.time_s && d.take == r.take && d.channel == (c == 0 ? "near" : "far")) p.heavy = {{1e3 * (*d.time_s)[0], 1e3 * (*d.time_s)[1]}};
+    if (d.time_s && d.take == r.take && (d.channel.empty() || d.channel == (c == 0 ? "near" : "far"))) p.heavy = {{1e3 * (*d.time_s)[0], 1e3 * (*d.time_s)[1]}};
     f.panels.push_back(p);
   }
   f.share_axis();
@@ -113,8 +113,9 @@ void add_figures(const rig_diagnosis& d, report_page& page) {
   const residual_picture& r = *d.residual;
   const bool corrected = d.after && d.time_s && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) { return r.before.force_N != r.after.force_N; });
   figure before = residual_figure(r, r.before, d);
-  before.caption = "What the declared model leaves of " + r.take + " over its first periods, both ends, up to " + number(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
-  if (d.time_s) before.caption += " The bar marks where it is largest; over the stretch that was fitted it is " + number(d.residual_over_noise) + " times the noise.";
+  before.caption = "What the declared model leaves of " + r.take + " " + r.stretch + ", both ends, up to " + number(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
+  if (d.odd) before.caption += " The bar marks where it begins; over the whole take it is " + number(d.residual_over_noise) + " times the noise.";
+  else if (d.time_s) before.caption += " The bar marks where it is largest; over the stretch that was fitted it is " + number(d.residual_over_noise) + " times the noise.";
   else before.caption += " It is within the noise: the plucks show no mismatch.";
   page.figures.push_back(before);
   if (corrected) {

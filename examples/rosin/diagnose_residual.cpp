@@ -4,7 +4,7 @@
 //
 #include "diagnose_rig.hpp"
 
-#include <rosin/diagnose/pluck_diagnosis.hpp>
+#include <rosin/diagnose/odd_pluck.hpp>
 
 namespace tool {
 
@@ -26,6 +26,14 @@ left_over left_by(const rosin::scene_data& data, const rosin::scene_fit& fit, st
   return out;
 }
 
+void add_noise(const rosin::scene_fit& fit, residual_picture& out) {
+  for (std::size_t c = 0; c < 2; ++c) {
+    const double noise = fit.quality.noise[c];
+    out.noise_N_per_root_Hz[c] = noise / std::sqrt(0.5 * out.rate_Hz);
+    out.noise_N[c] = noise * std::sqrt((out.limits.pass_Hz + out.limits.stop_Hz) / out.rate_Hz);
+  }
+}
+
 }  // namespace
 
 std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& p) {
@@ -36,11 +44,27 @@ std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& p) {
   out.fundamental_Hz = p.base.value[rosin::pluck_layout::fundamental];
   out.limits = before.limits, out.before = before.series;
   out.after = p.best.effects.empty() ? before.series : left_by(p.data, p.best, p.mismatch.take).series;
-  for (std::size_t c = 0; c < 2; ++c) {
-    const double noise = p.best.quality.noise[c];
-    out.noise_N_per_root_Hz[c] = noise / std::sqrt(0.5 * out.rate_Hz);
-    out.noise_N[c] = noise * std::sqrt((before.limits.pass_Hz + before.limits.stop_Hz) / out.rate_Hz);
-  }
+  add_noise(p.best, out);
+  return out;
+}
+
+residual_picture residuals_of(const rosin::odd_pluck& odd) {
+  const rosin::take_and_model& t = odd.ringing;
+  residual_picture out;
+  out.take = odd.take.name, out.rate_Hz = odd.take.rate_Hz, out.limits = odd.others.declared.limits;
+  out.fundamental_Hz = odd.others.best.value[rosin::pluck_layout::fundamental];
+  out.stretch = "from a period before it goes astray on";
+  add_noise(odd.others.best, out);
+  const double from_s = std::max(t.begin_s, odd.time_s[0] - 1 / out.fundamental_Hz), lost_s = odd.lost ? odd.lost->time_s : 1e300;
+  const auto begin = static_cast<Eigen::Index>((from_s - t.begin_s) * out.rate_Hz), lag = odd.lost ? static_cast<Eigen::Index>(odd.lost->count) : 0;
+  const Eigen::Index count = std::min(t.recorded[0].size() - begin - lag, static_cast<Eigen::Index>(shown_periods * out.rate_Hz / out.fundamental_Hz));
+  out.before.begin_s = out.after.begin_s = t.begin_s + static_cast<double>(begin) / out.rate_Hz;
+  for (std::size_t c = 0; c < 2; ++c)
+    for (Eigen::Index i = begin; i < begin + count; ++i) {
+      const bool behind = t.begin_s + static_cast<double>(i) / out.rate_Hz > lost_s;
+      out.before.force_N[c].push_back(t.recorded[c][i] - t.model[c][i]);
+      out.after.force_N[c].push_back(t.recorded[c][i] - t.model[c][i + (behind ? lag : 0)]);
+    }
   return out;
 }
 

@@ -13,6 +13,7 @@
 
 namespace rosin {
 struct pluck_diagnosis;
+struct odd_pluck;
 }
 
 namespace tool {
@@ -33,15 +34,6 @@ struct missing_effect {
   std::string statement;
 };
 
-/// A pluck that contradicts the others, and why if that is known.
-struct odd_take {
-  std::string name, statement;
-  double before = 0, floor = 0;
-  std::optional<double> after;
-  std::array<double, 2> time_s{};
-  std::optional<missing_effect> lost;
-};
-
 struct ranked_model {
   std::vector<std::string> effects;
   double log10_evidence = 0;
@@ -53,7 +45,7 @@ struct residual_series {
   std::array<std::vector<double>, 2> force_N;
 };
 
-/// What the declared model and the corrected one leave of the pluck in which they part most, over its first periods.
+/// What the declared model and the corrected one leave of the pluck in which they part most, over its first periods or where it goes astray.
 struct residual_picture {
   std::string take;
   double rate_Hz = 0, fundamental_Hz = 0;
@@ -61,6 +53,17 @@ struct residual_picture {
   std::array<double, 2> noise_N{};                ///< standard deviation in that band
   std::array<double, 2> noise_N_per_root_Hz{};
   residual_series before, after;
+  std::string stretch = "over its first periods";
+};
+
+/// A pluck that contradicts the others, and why if that is known.
+struct odd_take {
+  std::string name, statement;
+  double before = 0, floor = 0;
+  std::optional<double> after;
+  std::array<double, 2> time_s{};
+  std::optional<missing_effect> lost;
+  residual_picture picture;
 };
 
 /// One partial as a pickup heard it, and where the declared law and the corrected one have it.
@@ -109,6 +112,7 @@ inline constexpr std::size_t diagnosis_steps = 4;
 /// A parameter of the fit in the names and units of the format; the doubt in nominal values joins the standard deviation.
 [[nodiscard]] diagnosed_value in_si(const std::string& name, double value, double sd, const rosin::rig_values& values, double fundamental_Hz);
 [[nodiscard]] std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& plucks);
+[[nodiscard]] residual_picture residuals_of(const rosin::odd_pluck& odd);
 [[nodiscard]] json to_json(const rig_diagnosis& d, const provenance& from);
 /// A page: the sentence, what is left before and after, parameters, runners-up, what could not be done. Needs gnuplot.
 [[nodiscard]] std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d, const provenance& from);

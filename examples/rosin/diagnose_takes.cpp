@@ -11,7 +11,7 @@ namespace {
 /// Rms residual / rms recorded of a take with and without what lies between two instants (and what a band's filter makes of them).
 std::array<double, 2> with_and_without(const rosin::pluck_diagnosis& p, const rosin::pluck_take& take, double from_s, double to_s) {
   constexpr double blurred = 80;
-  const rosin::detail::take_and_model t = rosin::detail::compare_late(p, take);
+  const rosin::take_and_model t = rosin::detail::compare_late(p, take);
   double recorded = 0, off = 0, inside = 0;
   for (std::size_t c = 0; c < 2; ++c)
     for (Eigen::Index i = 0; i < t.recorded[c].size(); ++i) {
@@ -34,7 +34,7 @@ missing_effect lost(const std::string& take, const std::string& channel, double 
 }  // namespace
 
 odd_take described(const rosin::odd_pluck& odd) {
-  odd_take out{odd.take.name, {}, odd.before, odd.floor, {}, odd.time_s, {}};
+  odd_take out{odd.take.name, {}, odd.before, odd.floor, {}, odd.time_s, {}, residuals_of(odd)};
   const double others_Hz = odd.others.best.value[rosin::pluck_layout::fundamental], apart = odd.own_fundamental_Hz / others_Hz - 1;
   out.statement = odd.take.name + " contradicts the other plucks: ";
   if (odd.lost) {
@@ -56,7 +56,12 @@ void add_odd(const odd_take& odd, rig_diagnosis& d) {
   d.before = odd.before, d.after = odd.after.value_or(odd.before), d.noise_floor = odd.floor;
   d.residual_over_noise = odd.floor > 0 ? odd.before / odd.floor : 0;
   d.held_out = {odd.name};
-  if (odd.lost) d.missing.push_back(*odd.lost), d.ranking.insert(d.ranking.begin(), {{"dropouts"}, 0.0});
+  d.residual = odd.picture;
+  if (!odd.lost) return;
+  d.missing.push_back(*odd.lost);
+  const double gain = static_cast<double>(odd.picture.before.force_N[0].size()) * std::log10(odd.before / std::max(1e-9, d.after.value()));
+  for (auto& r : d.ranking) r.log10_evidence -= gain;
+  d.ranking.insert(d.ranking.begin(), {{"dropouts"}, 0.0});
 }
 
 void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& p, provenance& from, rig_diagnosis& d) {

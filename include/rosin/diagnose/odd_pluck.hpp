@@ -18,10 +18,17 @@ struct lost_samples {
   double time_s = 0, sd_s = 0;  ///< of the first that is missing, from the take's beginning
 };
 
+/// The part of a take after its release, and what it should be, in the band.
+struct take_and_model {
+  std::array<Eigen::VectorXd, 2> recorded, model;
+  double begin_s = 0, rate_Hz = 0;
+};
+
 /// A pluck that contradicts the others.
 struct odd_pluck {
   pluck_take take;
   pluck_diagnosis others;
+  take_and_model ringing;            ///< by release and strength of its first periods
   double own_fundamental_Hz = 0;     ///< of this pluck fitted by itself; 0: it cannot be
   bool strongest = false;
   std::array<double, 2> time_s{};    ///< from when on it is off: a window of half a period
@@ -31,12 +38,6 @@ struct odd_pluck {
 };
 
 namespace detail {
-
-/// The part of a take after its release, and what it should be, in the band.
-struct take_and_model {
-  std::array<Eigen::VectorXd, 2> recorded, model;
-  double begin_s = 0, rate_Hz = 0;
-};
 
 /// By release and strength of the first periods: what comes later is not to bend them.
 inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& take) {
@@ -80,7 +81,7 @@ inline loss_search find_loss(const take_and_model& t, std::size_t most_lag, std:
 /// A whole number of samples that is missing from some instant on, where that accounts for nearly all.
 inline void search_loss(odd_pluck& odd) {
   constexpr std::size_t most_lag = 1024, gap = 80;  // a band's filter blurs the gap
-  const take_and_model t = compare_late(odd.others, odd.take);
+  const take_and_model& t = odd.ringing;
   if (t.recorded[0].size() < static_cast<Eigen::Index>(8 * gap)) return;
   const loss_search found = find_loss(t, most_lag, gap);
   double recorded = 0, off = 0, samples = 0;
@@ -136,13 +137,14 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
   if (fitted.empty()) std::swap(fitted, kept);
   auto others = diagnose_plucks(fitted, kept, guess, options, catalogue_for);
   if (!others || !others->explained) return std::nullopt;
-  odd_pluck odd{all[which], *std::move(others), 0, true, {}, 0, 0, {}, 0};
+  odd_pluck odd{all[which], *std::move(others), {}, 0, true, {}, 0, 0, {}, 0};
   const auto seen = detail::predicted(odd.others.data, odd.others.best, odd.take, detail::rms_of(odd.others.best.quality.noise));
   odd.before = seen[0], odd.floor = seen[1];
   if (!(odd.before > clearly_off * odd.floor)) return std::nullopt;
   for (const pluck_take& take : all) odd.strongest = odd.strongest && take.strength_N <= odd.take.strength_N;
   if (const auto own = fit_plucks({odd.take}, guess, options, 0.95)) odd.own_fundamental_Hz = own->value[pluck_layout::fundamental];
-  if (const auto t = detail::compare_late(odd.others, odd.take); t.rate_Hz > 0) odd.time_s = detail::first_off(t, odd.others.best.value[pluck_layout::fundamental]);
+  odd.ringing = detail::compare_late(odd.others, odd.take);
+  if (odd.ringing.rate_Hz > 0) odd.time_s = detail::first_off(odd.ringing, odd.others.best.value[pluck_layout::fundamental]);
   detail::search_loss(odd);
   return odd;
 }
