@@ -36,12 +36,18 @@ struct plucks_to_diagnose {
 };
 [[nodiscard]] rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from);
 
-[[nodiscard]] rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d,
-                                                                        const std::vector<std::string>& without = {});
+/// What the plucks tell; where one of them contradicts the others, `odd` holds that one and what these tell.
+struct plucks_told {
+  rosin::pluck_diagnosis found;
+  std::optional<rosin::odd_pluck> odd;
 
-/// A pluck that contradicts the others: what is said of it, and what the diagnosis then is about.
-[[nodiscard]] odd_take described(const rosin::odd_pluck& odd);
-void add_odd(const odd_take& odd, rig_diagnosis& d);
+  [[nodiscard]] const rosin::pluck_diagnosis& sound() const { return odd ? odd->others : found; }
+};
+[[nodiscard]] rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, std::vector<std::string>& warnings,
+                                                             const std::vector<std::string>& without = {});
+
+/// A pluck that contradicts the others is what the diagnosis then is about.
+void add_odd(const rosin::odd_pluck& odd, rig_diagnosis& d);
 /// Samples that the checks found lost in any take; such a take is in no fit.
 void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, provenance& from, rig_diagnosis& d);
 /// Plucks that were made clearly elsewhere than declared.

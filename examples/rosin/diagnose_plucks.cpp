@@ -17,11 +17,11 @@ rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin:
   return out;
 }
 
-rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, rig_diagnosis& d,
-                                                          const std::vector<std::string>& without) {
+rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, std::vector<std::string>& warnings,
+                                               const std::vector<std::string>& without) {
   const auto plucks = plucks_of(rig, values, from);
   if (!plucks) return rosin::failure{plucks.error()};
-  d.warnings.insert(d.warnings.end(), plucks->warnings.begin(), plucks->warnings.end());
+  warnings.insert(warnings.end(), plucks->warnings.begin(), plucks->warnings.end());
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;
   const double rate = plucks->takes.front().rate_Hz;
   std::vector<std::string> known = physics_of(rig);
@@ -31,12 +31,10 @@ rosin::outcome<rosin::pluck_diagnosis> diagnose_plucks_of(const rosin::rig& rig,
     return rosin::catalogue_without(known, facts, fit.limits);
   };
   auto found = rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
-  if (!found || found->explained) return found;
-  auto odd = rosin::find_odd_pluck(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
-  if (!odd) return found;
-  d.odd = described(*odd);
-  d.warnings.push_back(d.odd->statement);
-  return std::move(odd->others);
+  if (!found) return rosin::failure{found.error()};
+  plucks_told out{*std::move(found), {}};
+  if (!out.found.explained) out.odd = rosin::find_odd_pluck(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
+  return out;
 }
 
 }  // namespace tool

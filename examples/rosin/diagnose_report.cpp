@@ -114,8 +114,7 @@ void add_figures(const rig_diagnosis& d, report_page& page) {
   const bool corrected = d.after && d.time_s && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) { return r.before.force_N != r.after.force_N; });
   figure before = residual_figure(r, r.before, d);
   before.caption = "What the declared model leaves of " + r.take + " " + r.stretch + ", both ends, up to " + number(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
-  if (d.odd) before.caption += " The bar marks where it begins; over the whole take it is " + number(d.residual_over_noise) + " times the noise.";
-  else if (d.time_s) before.caption += " The bar marks where it is largest; over the stretch that was fitted it is " + number(d.residual_over_noise) + " times the noise.";
+  if (d.time_s) before.caption += " " + r.bar + " " + number(d.residual_over_noise) + " times the noise.";
   else before.caption += " It is within the noise: the plucks show no mismatch.";
   page.figures.push_back(before);
   if (corrected) {

@@ -53,7 +53,7 @@ residual_picture residuals_of(const rosin::odd_pluck& odd) {
   residual_picture out;
   out.take = odd.take.name, out.rate_Hz = odd.take.rate_Hz, out.limits = odd.others.declared.limits;
   out.fundamental_Hz = odd.others.best.value[rosin::pluck_layout::fundamental];
-  out.stretch = "from a period before it goes astray on";
+  out.stretch = "from a period before it goes astray on", out.bar = "The bar marks where it begins; over the whole take it is";
   add_noise(odd.others.best, out);
   const double from_s = std::max(t.begin_s, odd.time_s[0] - 1 / out.fundamental_Hz), lost_s = odd.lost ? odd.lost->time_s : 1e300;
   const auto begin = static_cast<Eigen::Index>((from_s - t.begin_s) * out.rate_Hz), lag = odd.lost ? static_cast<Eigen::Index>(odd.lost->count) : 0;

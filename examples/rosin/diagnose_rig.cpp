@@ -261,14 +261,14 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   d.title = rig.title.value_or(rig.file);
   const rosin::rig_values values = rosin::values_of(rig);
   d.assumed = values.assumed;
-  auto plucks = diagnose_plucks_of(rig, values, from, d, without);
+  const auto plucks = diagnose_plucks_of(rig, values, from, d.warnings, without);
   step();
   if (!plucks) return rosin::failure{plucks.error()};
-  const rosin::pluck_diagnosis& p = *plucks;
+  const rosin::pluck_diagnosis& p = plucks->sound();
   take_over(p, values, d);
   const auto knows = [&](const char* effect) { return std::find(without.begin(), without.end(), effect) == without.end(); };
   if (p.explained && knows("pluck-position")) name_pluck_position(values, p, d);
-  if (d.odd) add_odd(*d.odd, d);
+  if (plucks->odd) add_odd(*plucks->odd, d);
   if (p.explained && knows("dropouts")) name_dropouts(rig, p, from, d);
   add_calibration(p, d);
 
@@ -291,7 +291,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     contact_open = !examine_contact(rig, strokes, plain_string, without, d);
   }
   rank(d);
-  const bool contradicted = d.odd && !d.odd->lost;
+  const bool contradicted = plucks->odd && !plucks->odd->lost;
   d.verdict = !p.explained || contact_open || contradicted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";
   if (d.verdict != "no-mismatch" && d.take.empty()) {
     d.take = strokes.empty() ? p.data.takes.front().name : strokes.front().name;

@@ -53,17 +53,7 @@ struct residual_picture {
   std::array<double, 2> noise_N{};                ///< standard deviation in that band
   std::array<double, 2> noise_N_per_root_Hz{};
   residual_series before, after;
-  std::string stretch = "over its first periods";
-};
-
-/// A pluck that contradicts the others, and why if that is known.
-struct odd_take {
-  std::string name, statement;
-  double before = 0, floor = 0;
-  std::optional<double> after;
-  std::array<double, 2> time_s{};
-  std::optional<missing_effect> lost;
-  residual_picture picture;
+  std::string stretch = "over its first periods", bar = "The bar marks where it is largest; over the stretch that was fitted it is";  ///< what the captions say
 };
 
 /// One partial as a pickup heard it, and where the declared law and the corrected one have it.
@@ -95,7 +85,6 @@ struct rig_diagnosis {
   std::optional<std::array<double, 2>> time_s, band_Hz;
   std::optional<double> position;
   double residual_over_noise = 0;
-  std::optional<odd_take> odd;  ///< left out of the fit
   std::optional<residual_picture> residual;
   std::vector<std::string> assumed, warnings;
   std::optional<pickup_picture> pickup;  ///< of a rig without two force channels

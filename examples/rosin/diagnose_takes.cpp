@@ -31,35 +31,29 @@ missing_effect lost(const std::string& take, const std::string& channel, double 
   return m;
 }
 
-}  // namespace
-
-odd_take described(const rosin::odd_pluck& odd) {
-  odd_take out{odd.take.name, {}, odd.before, odd.floor, {}, odd.time_s, {}, residuals_of(odd)};
+std::string contradiction(const rosin::odd_pluck& odd) {
+  const auto figure = [](double x, const char* form) { return rosin::detail::figure(x, form); };
+  const std::string out = odd.take.name + " contradicts the other plucks: ";
+  if (odd.lost) return out + figure(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
   const double others_Hz = odd.others.best.value[rosin::pluck_layout::fundamental], apart = odd.own_fundamental_Hz / others_Hz - 1;
-  out.statement = odd.take.name + " contradicts the other plucks: ";
-  if (odd.lost) {
-    out.after = odd.after;
-    out.lost = lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s);
-    out.statement += rosin::detail::figure(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
-  } else if (odd.own_fundamental_Hz > 0 && std::abs(apart) > 1e-5) {
-    out.statement += "by itself it rings at " + rosin::detail::figure(odd.own_fundamental_Hz, "%.6g") + " Hz, the others at " + rosin::detail::figure(others_Hz, "%.6g") +
-                     " Hz; another tuning or another string?";
-  } else {
-    out.statement += "off from " + rosin::detail::figure(odd.time_s[0], "%.4f") + " s on";
-  }
-  if (odd.strongest && !odd.lost) out.statement += "; it is the strongest: something that only large motion meets?";
-  return out;
+  const std::string strongest = odd.strongest ? "; it is the strongest: something that only large motion meets?" : "";
+  if (odd.own_fundamental_Hz > 0 && std::abs(apart) > 1e-5)
+    return out + "by itself it rings at " + figure(odd.own_fundamental_Hz, "%.6g") + " Hz, the others at " + figure(others_Hz, "%.6g") + " Hz; another tuning or another string?" + strongest;
+  return out + "off from " + figure(odd.time_s[0], "%.4f") + " s on" + strongest;
 }
 
-void add_odd(const odd_take& odd, rig_diagnosis& d) {
-  d.take = odd.name, d.channel.clear(), d.time_s = odd.time_s, d.band_Hz.reset();
-  d.before = odd.before, d.after = odd.after.value_or(odd.before), d.noise_floor = odd.floor;
+}  // namespace
+
+void add_odd(const rosin::odd_pluck& odd, rig_diagnosis& d) {
+  d.warnings.push_back(contradiction(odd));
+  d.take = odd.take.name, d.channel.clear(), d.time_s = odd.time_s, d.band_Hz.reset();
+  d.before = odd.before, d.after = odd.lost ? odd.after : odd.before, d.noise_floor = odd.floor;
   d.residual_over_noise = odd.floor > 0 ? odd.before / odd.floor : 0;
-  d.held_out = {odd.name};
-  d.residual = odd.picture;
+  d.held_out = {odd.take.name};
+  d.residual = residuals_of(odd);
   if (!odd.lost) return;
-  d.missing.push_back(*odd.lost);
-  const double gain = static_cast<double>(odd.picture.before.force_N[0].size()) * std::log10(odd.before / std::max(1e-9, d.after.value()));
+  d.missing.push_back(lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s));
+  const double gain = static_cast<double>(d.residual->before.force_N[0].size()) * std::log10(odd.before / std::max(1e-9, odd.after));
   for (auto& r : d.ranking) r.log10_evidence -= gain;
   d.ranking.insert(d.ranking.begin(), {{"dropouts"}, 0.0});
 }

@@ -44,13 +44,7 @@ public:
   [[nodiscard]] law_fit fit(bool thermal) const {
     law_fit law = thermal ? fit_thermal(records_, floor_) : fit_velocity_curve(records_, floor_);
     if (!(level_sd_ > 0)) return law;
-    for (std::size_t t = 1; t < law.design.rows.size(); ++t) {
-      auto& rows = law.design.rows[t];
-      const Eigen::Index c = rows.own.cols(), smooth = std::min(rows.target.size(), rows.shared.cols() - 2);  // rows that keep the law smooth
-      rows.own.conservativeResize(rows.target.size(), c + 1);
-      rows.own.col(c).setZero();
-      rows.own.col(c).head(rows.target.size() - smooth).setOnes();
-    }
+    detail::free_levels(law.design);
     law.fit = fit_design(law.design, floor_);
     return law;
   }

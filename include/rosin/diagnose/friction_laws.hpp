@@ -93,6 +93,17 @@ inline void keep_smooth(stick_rows& rows, double weight = 0.1) {
   }
 }
 
+/// Strokes that may be off against the first by a constant each: a column of its own for each but the first, of which the rows that keep
+/// the law smooth have nothing.
+inline void free_levels(stick_design& d) {
+  for (std::size_t t = 1; t < d.rows.size(); ++t) {
+    auto& rows = d.rows[t];
+    const Eigen::Index c = rows.own.cols(), samples = rows.target.size() - (rows.shared.cols() - 2);
+    rows.own.conservativeResize(rows.target.size(), c + 1);
+    rows.own.col(c) << Eigen::VectorXd::Ones(samples), Eigen::VectorXd::Zero(rows.target.size() - samples);
+  }
+}
+
 /// Rows of the spline equation for one x per sample and take; every `stride`-th slip sample.
 [[nodiscard]] inline stick_design law_design(const std::vector<slip_record>& records, const std::vector<Eigen::VectorXd>& x, std::size_t stride) {
   std::vector<double> all;

@@ -94,13 +94,8 @@ private:
     for (const auto& r : records_) samples += r.slips.sample.size();
     return std::max<std::size_t>(2, samples / 3000);
   }
-  /// One column for each stroke but the first; the rows that keep the law smooth have none of it.
-  [[nodiscard]] stick_design with_levels(stick_design d) const {
-    for (std::size_t t = 1; t < d.rows.size(); ++t) {
-      auto& rows = d.rows[t];
-      rows.own = Eigen::MatrixXd::Zero(rows.target.size(), 1);
-      rows.own.topRows(rows.target.size() - (rows.shared.cols() - 2)).setOnes();
-    }
+  [[nodiscard]] static stick_design with_levels(stick_design d) {
+    free_levels(d);
     return d;
   }
 

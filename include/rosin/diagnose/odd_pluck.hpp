@@ -42,11 +42,11 @@ namespace detail {
 /// By release and strength of the first periods: what comes later is not to bend them.
 inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& take) {
   constexpr double first_periods = 5;
-  seen_take seen = see(d.data, d.best, take, first_periods);
-  if (!seen.released) return {};
-  seen.stage.periods = d.best.horizon_periods;
-  const auto problem = seen.problem();
-  const auto left = residual_of(problem, seen.fit.value, 0);
+  auto seen = see(d.data, d.best, take, first_periods);
+  if (!seen) return {};
+  seen->stage.periods = d.best.horizon_periods;
+  const auto problem = seen->problem();
+  const auto left = residual_of(problem, seen->fit.value, 0);
   take_and_model out{problem.part(0, 1).data, {}, problem.part(0, 1).begin_s, take.rate_Hz};
   for (std::size_t c = 0; c < 2; ++c) out.model[c] = out.recorded[c] - left[c];
   return out;

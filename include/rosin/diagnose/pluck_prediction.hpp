@@ -70,19 +70,18 @@ inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, doub
 
 /// A take that was not fitted, by the model of those that were.
 struct seen_take {
-  scene_data data;          ///< the take by itself
-  scene_fit fit;            ///< release and strength free; of no effects' parameters where no release was found
-  fit_stage stage;          ///< what was looked at in the end
-  bool released = false;
+  scene_data data;  ///< the take by itself
+  scene_fit fit;    ///< release and strength were free
+  fit_stage stage;  ///< what was looked at in the end
 
   [[nodiscard]] line_problem<scene_plucks> problem() const { return data.problem(fit.effects, fit.value, stage, {1, 1}); }
 };
 
-/// By its first `most_periods`.
-inline seen_take see(const scene_data& data, const scene_fit& fit, const pluck_take& held, double most_periods = 1e9) {
-  seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options)}, {}, {}, false};
+/// By its first `most_periods`; nothing where no release is found.
+inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit, const pluck_take& held, double most_periods = 1e9) {
+  seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options)}, {}, {}};
   const auto start = find_start(out.data.takes, data.guess);
-  if (!start) return out;
+  if (!start) return std::nullopt;
   Eigen::VectorXd v(out.data.layout.size());
   v.head(pluck_layout::first_position) = fit.value.head(pluck_layout::first_position);
   std::size_t nearest = 0;
@@ -110,20 +109,19 @@ inline seen_take see(const scene_data& data, const scene_fit& fit, const pluck_t
   }
   out.stage = {1000, horizon, true, freedom::release_only};
   out.fit = fit_scene(out.data, effects, v, {{12, std::min(8.0, horizon), false, freedom::release_only}, {1000, std::min(12.0, horizon), true, freedom::release_only}, out.stage}, {1e-3, 1e-3});
-  out.released = true;
   return out;
 }
 
 /// Of a take that was not fitted: rms residual / rms recorded; the noise's share; samples.
 inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise) {
-  const seen_take seen = see(data, fit, held);
-  if (!seen.released) return {1, 0, 0};
-  const auto problem = seen.problem();
+  const auto seen = see(data, fit, held);
+  if (!seen) return {1, 0, 0};
+  const auto problem = seen->problem();
   double power = 0, samples = 0;
   for (const auto& part : {problem.part(0, 0), problem.part(0, 1)})
     for (const auto& d : part.data) power += d.squaredNorm(), samples += static_cast<double>(d.size());
-  const double mean_square = (seen.fit.quality.samples[0] + seen.fit.quality.samples[1]) / std::max(1.0, samples);
-  return {seen.fit.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power)), samples};
+  const double mean_square = (seen->fit.quality.samples[0] + seen->fit.quality.samples[1]) / std::max(1.0, samples);
+  return {seen->fit.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power)), samples};
 }
 
 /// What is left of a series without its mean and slope, squared and summed.

@@ -7,6 +7,7 @@
 #include <rosin/simulate/modal_stroke.hpp>
 
 #include "support/moving_end_rig.hpp"
+#include "support/through_band.hpp"
 
 #include <doctest/doctest.h>
 
@@ -28,15 +29,7 @@ const rosin::modal_take& bowed() {
 }
 
 /// The truth through the band of the reconstruction.
-std::vector<double> through_band(const std::vector<double>& x) {
-  const rosin::fir k = rosin::sample_response([](double) { return 1.0; }, limits, bowed().sample_rate_Hz, -150, 150);
-  std::vector<double> y(x.size(), std::nan(""));
-  for (std::size_t n = 150; n + 150 < x.size(); ++n) {
-    y[n] = 0;
-    for (std::size_t j = 0; j <= 300; ++j) y[n] += k.taps[j] * x[n + 150 - j];
-  }
-  return y;
-}
+std::vector<double> through_band(const std::vector<double>& x) { return test::through_band(x, limits, bowed().sample_rate_Hz); }
 
 template <class Motion>
 std::vector<double> mean_force(const Motion& m) {
