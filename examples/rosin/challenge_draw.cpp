@@ -142,7 +142,19 @@ void draw_other_string(challenge_rig& r, source& s) {
   r.base.law = rosin::velocity_curve<rosin::two_exponential_curve<double>>{r.base.steady_friction};
 }
 
+/// Beside the string, where it swings over to: only the strongest pluck gets there. On request only: what a seed has always drawn it still draws.
+hidden_effect beside_the_string(const std::string& name, challenge_rig& r, source& s, double k) {
+  const double x = place(s, r), p = r.base.position, per_newton = std::min(p, 1 - x) * (1 - std::max(p, 1 - x)) * r.base.rig.string.length_m / r.base.rig.string.tension_N;
+  std::array<double, 3> force{};
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] = r.base.plucks[i].force_N;
+  std::sort(force.begin(), force.end());
+  const double gap = -per_newton * (force[2] - k * s.uniform(0.1, 0.4) * (force[2] - force[1]));
+  r.burden.stop = {x, gap, 3e5};
+  return {name, "", "", {{"position", x}, {"gap_m", -gap}}};
+}
+
 void hide(const std::string& name, challenge_rig& r, source& s, double k) {
+  if (name == "rattle") return r.effects.push_back(beside_the_string(name, r, s, k));
   const auto& all = hideable();
   const auto index = std::find(all.begin(), all.end(), name) - all.begin();
   r.effects.push_back(index < 7 ? on_the_string(name, r, s, k) : index < 13 ? in_the_sensors(name, r, s, k) : under_the_bow(name, r, s, k));

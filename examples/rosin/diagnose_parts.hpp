@@ -8,7 +8,7 @@
 
 #include <rosin/acquire/rig_values.hpp>
 #include <rosin/diagnose/contact_effects.hpp>
-#include <rosin/diagnose/odd_pluck.hpp>
+#include <rosin/diagnose/rattle_effect.hpp>
 #include <rosin/diagnose/tension_drift.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
 
@@ -46,8 +46,9 @@ struct plucks_told {
 [[nodiscard]] rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, std::vector<std::string>& warnings,
                                                              const std::vector<std::string>& without = {});
 
-/// A pluck that contradicts the others is what the diagnosis then is about.
-void add_odd(const rosin::odd_pluck& odd, rig_diagnosis& d);
+/// A pluck that contradicts the others is what the diagnosis then is about; true if what makes it odd is found. impedance_Ns_m: 0 if an
+/// obstacle is not to be looked for.
+bool add_odd(const rosin::odd_pluck& odd, double impedance_Ns_m, rig_diagnosis& d);
 /// Samples that the checks found lost in any take; such a take is in no fit.
 void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, provenance& from, rig_diagnosis& d);
 /// Plucks that were made clearly elsewhere than declared.

@@ -4,7 +4,7 @@
 //
 #include "diagnose_rig.hpp"
 
-#include <rosin/diagnose/odd_pluck.hpp>
+#include <rosin/diagnose/rattle_effect.hpp>
 
 namespace tool {
 
@@ -12,15 +12,15 @@ namespace {
 
 constexpr double shown_periods = 40;
 
-struct left_over {
+struct residual_left {
   residual_series series;
   rosin::band limits;
 };
 
-left_over left_by(const rosin::scene_data& data, const rosin::scene_fit& fit, std::size_t take) {
+residual_left left_by(const rosin::scene_data& data, const rosin::scene_fit& fit, std::size_t take) {
   const double periods = std::min(shown_periods, fit.horizon_periods > 0 ? fit.horizon_periods : shown_periods);
   const auto problem = data.problem(fit.effects, fit.value, {1000, periods, true, rosin::freedom::all}, {1, 1});
-  left_over out{{problem.part(take, 1).begin_s, {}}, problem.limits()};
+  residual_left out{{problem.part(take, 1).begin_s, {}}, problem.limits()};
   const auto residual = rosin::detail::residual_of(problem, fit.value, take);
   for (std::size_t c = 0; c < 2; ++c) out.series.force_N[c].assign(residual[c].begin(), residual[c].end());
   return out;
@@ -32,6 +32,15 @@ void add_noise(const rosin::scene_fit& fit, residual_picture& out) {
     out.noise_N_per_root_Hz[c] = noise / std::sqrt(0.5 * out.rate_Hz);
     out.noise_N[c] = noise * std::sqrt((out.limits.pass_Hz + out.limits.stop_Hz) / out.rate_Hz);
   }
+}
+
+/// What the picture of a pluck that contradicts the others begins with.
+residual_picture picture_of(const rosin::odd_pluck& odd) {
+  residual_picture out;
+  out.take = odd.take.name, out.rate_Hz = odd.take.rate_Hz, out.limits = odd.others.declared.limits;
+  out.fundamental_Hz = odd.others.best.value[rosin::pluck_layout::fundamental];
+  add_noise(odd.others.best, out);
+  return out;
 }
 
 }  // namespace
@@ -50,11 +59,8 @@ std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& p) {
 
 residual_picture residuals_of(const rosin::odd_pluck& odd) {
   const rosin::take_and_model& t = odd.ringing;
-  residual_picture out;
-  out.take = odd.take.name, out.rate_Hz = odd.take.rate_Hz, out.limits = odd.others.declared.limits;
-  out.fundamental_Hz = odd.others.best.value[rosin::pluck_layout::fundamental];
+  residual_picture out = picture_of(odd);
   out.stretch = "from a period before it goes astray on", out.bar = "The bar marks where it begins; over the whole take it is";
-  add_noise(odd.others.best, out);
   const double from_s = std::max(t.begin_s, odd.time_s[0] - 1 / out.fundamental_Hz), lost_s = odd.lost ? odd.lost->time_s : 1e300;
   const auto begin = static_cast<Eigen::Index>((from_s - t.begin_s) * out.rate_Hz), lag = odd.lost ? static_cast<Eigen::Index>(odd.lost->count) : 0;
   const Eigen::Index count = std::min(t.recorded[0].size() - begin - lag, static_cast<Eigen::Index>(shown_periods * out.rate_Hz / out.fundamental_Hz));
@@ -65,6 +71,17 @@ residual_picture residuals_of(const rosin::odd_pluck& odd) {
       out.before.force_N[c].push_back(t.recorded[c][i] - t.model[c][i]);
       out.after.force_N[c].push_back(t.recorded[c][i] - t.model[c][i + (behind ? lag : 0)]);
     }
+  return out;
+}
+
+residual_picture residuals_of(const rosin::odd_pluck& odd, const rosin::rattle& rattle) {
+  residual_picture out = picture_of(odd);
+  out.bar = "The bar marks the first contact; over the periods shown it is";
+  out.before.begin_s = out.after.begin_s = rattle.begin_s;
+  for (std::size_t c = 0; c < 2; ++c) {
+    out.before.force_N[c].assign(rattle.before_N[c].begin(), rattle.before_N[c].end());
+    out.after.force_N[c].assign(rattle.left_N[c].begin(), rattle.left_N[c].end());
+  }
   return out;
 }
 

@@ -76,6 +76,19 @@ std::vector<std::string> bare(const std::vector<std::string>& ids) {
   return out;
 }
 
+void add_place(const rosin::acting_place& place, rig_diagnosis& d) {
+  switch (place.on) {
+    case rosin::acting::on_string:
+      d.position = place.position;
+      d.acts = "on the string at " + rosin::detail::figure(place.position, "%.4f") + " +- " + rosin::detail::figure(2 * place.sd, "%.1g") + " of its length";
+      break;
+    case rosin::acting::near_end: d.position = 0, d.acts = "at the near end"; break;
+    case rosin::acting::far_end: d.position = 1, d.acts = "at the far end"; break;
+    case rosin::acting::near_channel: d.acts = "in the near channel"; break;
+    case rosin::acting::far_channel: d.acts = "in the far channel"; break;
+  }
+}
+
 void take_over(const rosin::pluck_diagnosis& p, const rosin::rig_values& values, rig_diagnosis& d) {
   for (std::size_t i = 0; i < p.best.effects.size(); ++i) d.missing.push_back(described(p, i, values));
   for (const auto& h : p.ranking) d.ranking.push_back({bare(h.ids), h.log_evidence / std::log(10.0)});
@@ -88,6 +101,7 @@ void take_over(const rosin::pluck_diagnosis& p, const rosin::rig_values& values,
   d.time_s = p.mismatch.time_s, d.band_Hz = p.mismatch.band_Hz, d.residual_over_noise = p.mismatch.residual_over_noise;
   for (const auto& m : d.missing)
     if (m.position) d.position = m.position;
+  if (p.mismatch.place) add_place(*p.mismatch.place, d);
 }
 
 void add_calibration(const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
@@ -268,7 +282,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   take_over(p, values, d);
   const auto knows = [&](const char* effect) { return std::find(without.begin(), without.end(), effect) == without.end(); };
   if (p.explained && knows("pluck-position")) name_pluck_position(values, p, d);
-  if (plucks->odd) add_odd(*plucks->odd, d);
+  const bool accounted = !plucks->odd || add_odd(*plucks->odd, knows("rattle") && values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, d);
   if (p.explained && knows("dropouts")) name_dropouts(rig, p, from, d);
   add_calibration(p, d);
 
@@ -291,8 +305,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     contact_open = !examine_contact(rig, strokes, plain_string, without, d);
   }
   rank(d);
-  const bool contradicted = plucks->odd && !plucks->odd->lost;
-  d.verdict = !p.explained || contact_open || contradicted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";
+  d.verdict = !p.explained || contact_open || !accounted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";
   if (d.verdict != "no-mismatch" && d.take.empty()) {
     d.take = strokes.empty() ? p.data.takes.front().name : strokes.front().name;
     d.residual_over_noise = d.noise_floor > 0 ? d.before / d.noise_floor : 0;

@@ -14,6 +14,7 @@
 namespace rosin {
 struct pluck_diagnosis;
 struct odd_pluck;
+struct rattle;
 }
 
 namespace tool {
@@ -84,6 +85,7 @@ struct rig_diagnosis {
   std::string take, channel;
   std::optional<std::array<double, 2>> time_s, band_Hz;
   std::optional<double> position;
+  std::string acts;  ///< what is left of an unexplained mismatch: "at 0.62 of the string's length", "at the near end", "in the far channel"
   double residual_over_noise = 0;
   std::optional<residual_picture> residual;
   std::vector<std::string> assumed, warnings;
@@ -102,6 +104,8 @@ inline constexpr std::size_t diagnosis_steps = 4;
 [[nodiscard]] diagnosed_value in_si(const std::string& name, double value, double sd, const rosin::rig_values& values, double fundamental_Hz);
 [[nodiscard]] std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& plucks);
 [[nodiscard]] residual_picture residuals_of(const rosin::odd_pluck& odd);
+/// The same of one that met an obstacle.
+[[nodiscard]] residual_picture residuals_of(const rosin::odd_pluck& odd, const rosin::rattle& rattle);
 [[nodiscard]] json to_json(const rig_diagnosis& d, const provenance& from);
 /// A page: the sentence, what is left before and after, parameters, runners-up, what could not be done. Needs gnuplot.
 [[nodiscard]] std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d, const provenance& from);

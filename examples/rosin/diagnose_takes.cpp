@@ -31,6 +31,22 @@ missing_effect lost(const std::string& take, const std::string& channel, double 
   return m;
 }
 
+missing_effect met(const rosin::rattle& r) {
+  missing_effect m;
+  m.effect = "rattle", m.position = r.place.position;
+  m.parameters = {{"position", r.place.position, r.place.sd}, {"gap_m", std::abs(r.gap_m), r.gap_sd_m}};
+  m.statement = statement_of(m);
+  return m;
+}
+
+/// What accounts for the odd one, and by how much the others' prediction of it gets better.
+void add_cause(missing_effect m, rig_diagnosis& d) {
+  const double gain = static_cast<double>(d.residual->before.force_N[0].size()) * std::log10(d.before / std::max(1e-9, *d.after));
+  for (auto& r : d.ranking) r.log10_evidence -= gain;
+  d.ranking.insert(d.ranking.begin(), {{m.effect}, 0.0});
+  d.missing.push_back(std::move(m));
+}
+
 std::string contradiction(const rosin::odd_pluck& odd) {
   const auto figure = [](double x, const char* form) { return rosin::detail::figure(x, form); };
   const std::string out = odd.take.name + " contradicts the other plucks: ";
@@ -44,18 +60,24 @@ std::string contradiction(const rosin::odd_pluck& odd) {
 
 }  // namespace
 
-void add_odd(const rosin::odd_pluck& odd, rig_diagnosis& d) {
+bool add_odd(const rosin::odd_pluck& odd, double impedance_Ns_m, rig_diagnosis& d) {
   d.warnings.push_back(contradiction(odd));
-  d.take = odd.take.name, d.channel.clear(), d.time_s = odd.time_s, d.band_Hz.reset();
+  d.take = odd.take.name, d.channel.clear(), d.time_s = odd.time_s, d.band_Hz.reset(), d.position.reset(), d.acts.clear();
   d.before = odd.before, d.after = odd.lost ? odd.after : odd.before, d.noise_floor = odd.floor;
   d.residual_over_noise = odd.floor > 0 ? odd.before / odd.floor : 0;
   d.held_out = {odd.take.name};
   d.residual = residuals_of(odd);
-  if (!odd.lost) return;
-  d.missing.push_back(lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s));
-  const double gain = static_cast<double>(d.residual->before.force_N[0].size()) * std::log10(odd.before / std::max(1e-9, odd.after));
-  for (auto& r : d.ranking) r.log10_evidence -= gain;
-  d.ranking.insert(d.ranking.begin(), {{"dropouts"}, 0.0});
+  if (odd.lost) {
+    add_cause(lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s), d);
+    return true;
+  }
+  const auto rattle = impedance_Ns_m > 0 ? rosin::find_rattle(odd, impedance_Ns_m) : std::nullopt;
+  if (!rattle) return false;
+  d.position = rattle->place.position, d.time_s = {rattle->first_s, rattle->first_s + odd.time_s[1] - odd.time_s[0]};
+  d.before = rattle->before, d.after = rattle->after, d.noise_floor = rattle->floor, d.residual_over_noise = rattle->before / rattle->floor;
+  d.residual = residuals_of(odd, *rattle);
+  add_cause(met(*rattle), d);
+  return true;
 }
 
 void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& p, provenance& from, rig_diagnosis& d) {

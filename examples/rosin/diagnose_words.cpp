@@ -85,6 +85,7 @@ std::string statement_of(const missing_effect& m) {
   if (m.effect == "normal-force-ripple") return "The normal force ripples at " + v("frequency_Hz", 1, "%.4g") + " Hz by " + v("relative", 100) + " %.";
   if (m.effect == "thermal-friction") return "Friction follows the temperature of the contact, not the sliding speed.";
   if (m.effect == "elasto-plastic-friction") return "The contact yields elastically before it slides: " + v("bristle_stiffness_N_m") + " N/m.";
+  if (m.effect == "rattle") return "The string meets an obstacle at " + v("position", 1, "%.4f") + " of its length, " + v("gap_m", 1e3) + " mm from where it rests.";
   if (m.effect == "creep") return "The string creeps while it sticks.";
   return "Missing: " + m.effect + ".";
 }
@@ -94,7 +95,7 @@ std::string sentence(const rig_diagnosis& d) {
   std::string out;
   for (const auto& m : d.missing) out += (out.empty() ? "" : " ") + m.statement;
   if (d.verdict == "explained") return out;
-  const std::string where = d.take.empty() ? "" : " It shows in " + d.take + (d.channel.empty() ? "" : ", channel " + d.channel) + ".";
+  const std::string where = d.take.empty() ? "" : " It shows in " + d.take + (d.channel.empty() ? "" : ", channel " + d.channel) + (d.acts.empty() ? "." : "; both ends agree that it acts " + d.acts + ".");
   return (out.empty() ? "" : out + " ") + std::string(out.empty() ? "Recordings and simulation differ, and nothing in the catalogue accounts for it." : "That does not account for all of it.") + where;
 }
 

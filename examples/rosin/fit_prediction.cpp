@@ -39,27 +39,18 @@ struct pluck_shape {
   /// Signal and its time derivative per newton, from sample `begin` on.
   void run(std::size_t begin, std::size_t count, double rate_Hz, double release_s, std::array<std::vector<double>, 2>& signal,
            std::array<std::vector<double>, 2>& slope) const {
-    const auto N = static_cast<Eigen::Index>(lines.size());
-    Eigen::MatrixXd on_re(N, 4), on_im(N, 4);
-    for (Eigen::Index n = 0; n < N; ++n)
-      for (Eigen::Index c = 0; c < 2; ++c) {
-        const auto& line = lines[static_cast<std::size_t>(n)];
-        const auto r = line.residue[static_cast<std::size_t>(c)] * std::exp(line.pole * (static_cast<double>(begin) / rate_Hz - release_s));
-        const auto d = r * line.pole;
-        on_re(n, 2 * c) = r.real(), on_im(n, 2 * c) = -r.imag();
-        on_re(n, 2 * c + 1) = d.real(), on_im(n, 2 * c + 1) = -d.imag();
+    std::vector<rosin::damped_line> now = lines, rate_of_change = lines;
+    for (std::size_t n = 0; n < lines.size(); ++n)
+      for (std::size_t c = 0; c < 2; ++c) {
+        now[n].residue[c] *= std::exp(lines[n].pole * (static_cast<double>(begin) / rate_Hz - release_s));
+        rate_of_change[n].residue[c] = now[n].residue[c] * lines[n].pole;
       }
-    for (auto* out : {&signal, &slope})
-      for (auto& channel : *out) channel.resize(count);
-    rosin::line_runner(lines, 1 / rate_Hz)(count, [&](std::size_t at, std::size_t length, const auto& re, const auto& im) {
-      const auto rows = static_cast<Eigen::Index>(length);
-      const Eigen::MatrixXd sum = re.topRows(rows) * on_re + im.topRows(rows) * on_im;
-      for (std::size_t i = 0; i < length; ++i)
-        for (std::size_t c = 0; c < 2; ++c) {
-          signal[c][at + i] = sum(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(2 * c));
-          slope[c][at + i] = sum(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(2 * c + 1));
-        }
-    });
+    const rosin::line_runner run(lines, 1 / rate_Hz);
+    const Eigen::MatrixXd sum = run.sum(now, count), slopes = run.sum(rate_of_change, count);
+    for (std::size_t c = 0; c < 2; ++c) {
+      signal[c].assign(sum.data() + c * count, sum.data() + (c + 1) * count);
+      slope[c].assign(slopes.data() + c * count, slopes.data() + (c + 1) * count);
+    }
   }
 };
 

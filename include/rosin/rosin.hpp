@@ -173,6 +173,7 @@
 #include <rosin/diagnose/law_choice.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
 #include <rosin/diagnose/lost_level.hpp>
+#include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/odd_pluck.hpp>
 #include <rosin/diagnose/pickup_diagnosis.hpp>
@@ -195,6 +196,7 @@
 #include <rosin/diagnose/pluck_prediction.hpp>
 #include <rosin/diagnose/pluck_scene.hpp>
 #include <rosin/diagnose/pluck_score.hpp>
+#include <rosin/diagnose/rattle_effect.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/diagnose/scene_lines.hpp>
 #include <rosin/diagnose/scene_plucks.hpp>

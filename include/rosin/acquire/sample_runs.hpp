@@ -110,6 +110,7 @@ namespace detail {
 /// The span is entered and left in a way that the motion around it does not explain.
 [[nodiscard]] inline bool is_frozen(const std::vector<double>& x, const sample_span& s, double step, double chance) {
   constexpr std::size_t around = 64;
+  constexpr double repeat_share = 0.27;  // normal differences of median size m: so many m-ths of a step are rounded to none
   if (s.first == 0 || s.end() >= x.size()) return false;
   const double before = median_movement(x, s.first > around ? s.first - around : 0, s.first);
   const double after = median_movement(x, s.end(), std::min(x.size(), s.end() + around));
@@ -117,7 +118,8 @@ namespace detail {
   if (least <= 0 || least < 2 * step) return false;
   const auto [in, out] = edge_jumps(x, s);
   const bool zeroed = x[s.first] == 0.0 && s.count >= 2 && std::min(in, out) >= 8 * most;
-  const double by_chance = static_cast<double>(x.size()) * std::pow(chance, static_cast<double>(s.count - 1));
+  const double chance_here = std::max(chance, repeat_share * step / least);
+  const double by_chance = static_cast<double>(x.size()) * std::pow(chance_here, static_cast<double>(s.count - 1));
   const bool jumps = s.count >= 4 && std::max(in, out) >= std::max(3 * most, 6 * step);
   const bool cut_short = s.count >= 8 && std::min(in, out) >= std::max(0.3 * least, 6 * step);
   return zeroed || (by_chance < 1e-3 && (jumps || cut_short));

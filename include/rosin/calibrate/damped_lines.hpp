@@ -28,11 +28,11 @@ struct damped_line {
 };
 
 /// sum_{k=0}^{count-1} (k h)^a exp(p k h) for a = 0, 1, 2.
-[[nodiscard]] inline std::array<std::complex<double>, 3> power_sums(std::complex<double> p, double step_s, std::size_t count) {
+/// one_step: exp(p h).
+[[nodiscard]] inline std::array<std::complex<double>, 3> power_sums_of(std::complex<double> one_step, double step_s, std::size_t count) {
   std::array<std::complex<double>, 3> sum{};  // over `done` samples
   std::complex<double> z = 1;                 // exp(p h done)
   double t = 0;                               // h done
-  const std::complex<double> one_step = std::exp(p * step_s);
   for (std::size_t bit = std::bit_floor(count); bit != 0; bit >>= 1) {
     const std::array<std::complex<double>, 3> half = sum;
     sum[2] += z * (half[2] + 2 * t * half[1] + t * t * half[0]);
@@ -50,16 +50,21 @@ struct damped_line {
   }
   return sum;
 }
+[[nodiscard]] inline std::array<std::complex<double>, 3> power_sums(std::complex<double> p, double step_s, std::size_t count) {
+  return power_sums_of(std::exp(p * step_s), step_s, count);
+}
 
 /// Gram matrix of the functions Re z_n, Im z_n, t Re z_n, t Im z_n (four per line, in this order), z_n = exp(s_n t),
 /// over t = 0, h, ... (count - 1) h.  Shape: 4N x 4N.
 [[nodiscard]] inline Eigen::MatrixXd line_gram(const std::vector<damped_line>& lines, double step_s, std::size_t count) {
   const auto N = static_cast<Eigen::Index>(lines.size());
   Eigen::MatrixXd gram(4 * N, 4 * N);
+  std::vector<std::complex<double>> one_step;
+  for (const damped_line& line : lines) one_step.push_back(std::exp(line.pole * step_s));
   for (Eigen::Index i = 0; i < N; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) {
-      const auto si = lines[static_cast<std::size_t>(i)].pole, sj = lines[static_cast<std::size_t>(j)].pole;
-      const auto same = power_sums(si + sj, step_s, count), cross = power_sums(si + std::conj(sj), step_s, count);
+      const auto zi = one_step[static_cast<std::size_t>(i)], zj = one_step[static_cast<std::size_t>(j)];
+      const auto same = power_sums_of(zi * zj, step_s, count), cross = power_sums_of(zi * std::conj(zj), step_s, count);
       for (int a = 0; a < 2; ++a)
         for (int b = 0; b < 2; ++b) {
           const auto u = same[static_cast<std::size_t>(a + b)], v = cross[static_cast<std::size_t>(a + b)];
@@ -72,48 +77,92 @@ struct damped_line {
   return gram;
 }
 
-/// Runs over equidistant samples with all lines at hand: `visit(begin, length, re, im)` is called for blocks of samples, where
-/// re and im are length x N matrices of the lines at these samples.
+/// Lines at equidistant samples. A block of them is a table times one factor a line, so that sums of lines, and products with
+/// lines, are products of matrices, many blocks at a time.
 class line_runner {
 public:
   static constexpr std::size_t block = 256;
 
-  line_runner(const std::vector<damped_line>& lines, double step_s) {
+  line_runner(const std::vector<damped_line>& lines, double step_s) : step_s_{step_s}, table_(block, 2 * lines.size()), jump_(static_cast<Eigen::Index>(lines.size())) {
     const auto N = static_cast<Eigen::Index>(lines.size());
-    power_re_.resize(block, N);
-    power_im_.resize(block, N);
-    jump_.resize(lines.size());
     for (Eigen::Index n = 0; n < N; ++n) {
       const std::complex<double> pole = lines[static_cast<std::size_t>(n)].pole;
       const std::complex<double> step = std::exp(pole * step_s);
       std::complex<double> z = 1;
-      for (Eigen::Index i = 0; i < Eigen::Index{block}; ++i, z *= step) {
-        power_re_(i, n) = z.real();
-        power_im_(i, n) = z.imag();
-      }
-      jump_[static_cast<std::size_t>(n)] = std::exp(pole * step_s * static_cast<double>(block));
+      for (Eigen::Index i = 0; i < Eigen::Index{block}; ++i, z *= step) table_(i, n) = z.real(), table_(i, N + n) = z.imag();
+      jump_[n] = std::exp(pole * step_s * static_cast<double>(block));
     }
   }
 
-  template <class Visit>
-  void operator()(std::size_t count, Visit&& visit) const {
-    const auto N = power_re_.cols();
-    Eigen::MatrixXd re(block, N), im(block, N);
-    std::vector<std::complex<double>> start(jump_.size(), 1.0);
-    for (std::size_t begin = 0; begin < count; begin += block) {
-      for (Eigen::Index n = 0; n < N; ++n) {
-        std::complex<double>& z = start[static_cast<std::size_t>(n)];
-        re.col(n) = z.real() * power_re_.col(n) - z.imag() * power_im_.col(n);
-        im.col(n) = z.real() * power_im_.col(n) + z.imag() * power_re_.col(n);
-        z *= jump_[static_cast<std::size_t>(n)];
+  /// sum_n Re{ residue_nc z_n }: count x 2.
+  [[nodiscard]] Eigen::MatrixXd sum(const std::vector<damped_line>& lines, std::size_t count) const {
+    const Eigen::Index N = jump_.size();
+    Eigen::MatrixXd out(static_cast<Eigen::Index>(count), 2);
+    in_chunks(count, [&](Eigen::Index begin, Eigen::Index blocks, const Eigen::MatrixXcd& start) {
+      Eigen::MatrixXd factor(2 * N, 2 * blocks);
+      for (Eigen::Index n = 0; n < N; ++n)
+        for (Eigen::Index c = 0; c < 2; ++c) {
+          const auto r = lines[static_cast<std::size_t>(n)].residue[static_cast<std::size_t>(c)] * start.row(n);
+          factor.row(n).segment(c * blocks, blocks) = r.real(), factor.row(N + n).segment(c * blocks, blocks) = -r.imag();
+        }
+      const Eigen::MatrixXd both = table_ * factor;
+      for (Eigen::Index c = 0; c < 2; ++c) {
+        const Eigen::Index length = std::min(blocks * table_.rows(), out.rows() - begin);
+        out.col(c).segment(begin, length) = Eigen::Map<const Eigen::VectorXd>(both.data() + c * blocks * table_.rows(), length);
       }
-      visit(begin, std::min(block, count - begin), re, im);
-    }
+    });
+    return out;
+  }
+
+  /// Products of each column of `signals` with Re z_n, Im z_n, t Re z_n, t Im z_n: N x 4 a column.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> products(const Eigen::MatrixXd& signals) const {
+    const Eigen::Index N = jump_.size(), rows = table_.rows();
+    const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(rows, 0.0, step_s_ * static_cast<double>(rows - 1));
+    std::vector<Eigen::MatrixXd> out(static_cast<std::size_t>(signals.cols()), Eigen::MatrixXd::Zero(N, 4));
+    in_chunks(static_cast<std::size_t>(signals.rows()), [&](Eigen::Index begin, Eigen::Index blocks, const Eigen::MatrixXcd& start) {
+      const Eigen::Index length = std::min(blocks * rows, signals.rows() - begin);
+      Eigen::MatrixXd cut = Eigen::MatrixXd::Zero(rows, 2 * blocks);
+      for (Eigen::Index c = 0; c < signals.cols(); ++c) {
+        Eigen::Map<Eigen::VectorXd>(cut.data(), blocks * rows).head(length) = signals.col(c).segment(begin, length);
+        Eigen::Map<Eigen::VectorXd>(cut.data(), blocks * rows).tail(blocks * rows - length).setZero();
+        cut.rightCols(blocks) = ramp.asDiagonal() * cut.leftCols(blocks);
+        const Eigen::MatrixXd onto = table_.transpose() * cut;
+        add_products(onto, start, step_s_ * static_cast<double>(begin), out[static_cast<std::size_t>(c)]);
+      }
+    });
+    return out;
   }
 
 private:
-  Eigen::MatrixXd power_re_, power_im_;
-  std::vector<std::complex<double>> jump_;
+  static constexpr Eigen::Index most_blocks = 32;
+
+  /// visit(first sample, how many blocks, z_n at the beginning of each: N x blocks)
+  template <class Visit>
+  void in_chunks(std::size_t count, Visit&& visit) const {
+    const Eigen::Index rows = table_.rows(), all = static_cast<Eigen::Index>(count);
+    Eigen::VectorXcd at = Eigen::VectorXcd::Ones(jump_.size());
+    for (Eigen::Index begin = 0; begin < all; begin += most_blocks * rows) {
+      Eigen::MatrixXcd start(jump_.size(), std::min(most_blocks, (all - begin + rows - 1) / rows));
+      for (Eigen::Index b = 0; b < start.cols(); ++b, at.array() *= jump_.array()) start.col(b) = at;
+      visit(begin, start.cols(), start);
+    }
+  }
+
+  void add_products(const Eigen::MatrixXd& onto, const Eigen::MatrixXcd& start, double begin_s, Eigen::MatrixXd& sum) const {
+    const Eigen::Index N = start.rows(), blocks = start.cols();
+    for (Eigen::Index b = 0; b < blocks; ++b) {
+      const double t = begin_s + step_s_ * static_cast<double>(b * table_.rows());
+      for (Eigen::Index n = 0; n < N; ++n) {
+        const std::complex<double> plain = start(n, b) * std::complex<double>(onto(n, b), onto(N + n, b));
+        const std::complex<double> ramped = t * plain + start(n, b) * std::complex<double>(onto(n, blocks + b), onto(N + n, blocks + b));
+        sum(n, 0) += plain.real(), sum(n, 1) += plain.imag(), sum(n, 2) += ramped.real(), sum(n, 3) += ramped.imag();
+      }
+    }
+  }
+
+  double step_s_;
+  Eigen::MatrixXd table_;  // block x 2N: Re z, Im z
+  Eigen::VectorXcd jump_;  // z over a block
 };
 
 }  // namespace rosin

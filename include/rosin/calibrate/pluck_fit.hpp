@@ -122,7 +122,7 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
   result.residual_ratio = found.residual_ratio;
   const normal_equations end = problem.linearise(result.value);
   const Eigen::MatrixXd inverse = invert_free(result.layout, end.hessian);
-  result.covariance = inverse * (end.prior + found.inflation() * end.scatter) * inverse;
+  result.covariance = inverse * (end.prior + found.inflation() * problem.scatter(result.value)) * inverse;
   result.sd = result.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   result.unidentified = unidentified(end.hessian - end.prior, result.layout);
 }

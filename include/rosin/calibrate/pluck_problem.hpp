@@ -51,10 +51,9 @@ struct plain_plucks : pluck_layout {
   }
 };
 
-/// hessian step = gradient; `prior` is the part of the Hessian that does not come from data, `scatter` the covariance of the
-/// gradient's data part for white noise of the assumed size (less than the Hessian where the band falls off).
+/// hessian step = gradient; `prior` is the part of the Hessian that does not come from data.
 struct normal_equations {
-  Eigen::MatrixXd hessian, prior, scatter;
+  Eigen::MatrixXd hessian, prior;
   Eigen::VectorXd gradient;
   double cost = 0;
 };
@@ -99,8 +98,9 @@ public:
     std::array<Eigen::VectorXd, 2> data;
     [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(data[0].size()); }
   };
-  /// J^T r per line, the residual's power, and the residual itself where asked for.
+  /// The residual, J^T r per line, its power and the recording's.
   struct projection {
+    Eigen::MatrixXd residual;                   // count x 2
     std::array<Eigen::MatrixXd, 2> onto_lines;  // N x 4: Re z, Im z, t Re z, t Im z
     std::array<double, 2> power{}, signal{};
   };
@@ -122,9 +122,15 @@ public:
   void set_noise(std::array<double, 2> noise) { noise_ = noise; }
 
   [[nodiscard]] normal_equations linearise(const Eigen::VectorXd& value) const;
+  /// Covariance of the gradient's data part for white noise of the assumed size: less than the Hessian where the band falls off.
+  [[nodiscard]] Eigen::MatrixXd scatter(const Eigen::VectorXd& value) const;
   [[nodiscard]] assessment assess(const Eigen::VectorXd& value) const;
 
 private:
+  /// visit(take, stretch, lines, their Gram matrix, sensitivities), before and after each release.
+  template <class Visit>
+  void each_stretch(const Eigen::VectorXd& v, Visit&& visit) const;
+
   struct prepared {
     double rate_Hz;
     std::array<stretch, 2> part;  // before and after the release
@@ -151,38 +157,15 @@ private:
 template <LineModel Model>
 typename line_problem<Model>::projection line_problem<Model>::project(const stretch& s, double rate_Hz,
                                                                            const std::vector<damped_line>& lines) const {
-  const auto N = static_cast<Eigen::Index>(lines.size());
-  Eigen::MatrixXd residues(N, 4);  // re, -im of channel 1, of channel 2
-  for (Eigen::Index n = 0; n < N; ++n)
-    for (Eigen::Index c = 0; c < 2; ++c) {
-      const std::complex<double> r = lines[static_cast<std::size_t>(n)].residue[static_cast<std::size_t>(c)];
-      residues(n, 2 * c) = r.real();
-      residues(n, 2 * c + 1) = -r.imag();
-    }
-  projection out{{Eigen::MatrixXd::Zero(N, 4), Eigen::MatrixXd::Zero(N, 4)}, {}, {}};
-  Eigen::MatrixXd weighted(line_runner::block, 4);  // r, t r of either channel
-  line_runner(lines, 1 / rate_Hz)(s.count(), [&](std::size_t begin, std::size_t length, const auto& re, const auto& im) {
-    const auto at = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(length);
-    weighted.setZero();
-    for (Eigen::Index c = 0; c < 2; ++c) {
-      const auto data = s.data[static_cast<std::size_t>(c)].segment(at, rows);
-      weighted.col(2 * c).head(rows) = data;
-      weighted.col(2 * c).head(rows).noalias() -= re.topRows(rows) * residues.col(2 * c);
-      weighted.col(2 * c).head(rows).noalias() -= im.topRows(rows) * residues.col(2 * c + 1);
-      weighted.col(2 * c + 1).head(rows) =
-          weighted.col(2 * c).head(rows).cwiseProduct(Eigen::VectorXd::LinSpaced(rows, double(at), double(at + rows - 1)) / rate_Hz);
-      out.power[static_cast<std::size_t>(c)] += weighted.col(2 * c).head(rows).squaredNorm();
-      out.signal[static_cast<std::size_t>(c)] += data.squaredNorm();
-    }
-    const Eigen::MatrixXd on_re = re.transpose() * weighted, on_im = im.transpose() * weighted;
-    for (Eigen::Index c = 0; c < 2; ++c) {
-      Eigen::MatrixXd& sum = out.onto_lines[static_cast<std::size_t>(c)];
-      sum.col(0) += on_re.col(2 * c);
-      sum.col(1) += on_im.col(2 * c);
-      sum.col(2) += on_re.col(2 * c + 1);
-      sum.col(3) += on_im.col(2 * c + 1);
-    }
-  });
+  const line_runner run(lines, 1 / rate_Hz);
+  projection out{-run.sum(lines, s.count()), {}, {}, {}};
+  for (std::size_t c = 0; c < 2; ++c) {
+    auto left = out.residual.col(static_cast<Eigen::Index>(c));
+    left += s.data[c];
+    out.power[c] = left.squaredNorm(), out.signal[c] = s.data[c].squaredNorm();
+  }
+  const std::vector<Eigen::MatrixXd> onto = run.products(out.residual);
+  out.onto_lines = {onto[0], onto[1]};
   return out;
 }
 
@@ -213,30 +196,33 @@ std::array<Eigen::MatrixXd, 2> line_problem<Model>::sensitivities(const Eigen::V
 }
 
 template <LineModel Model>
+template <class Visit>
+void line_problem<Model>::each_stretch(const Eigen::VectorXd& v, Visit&& visit) const {
+  for (std::size_t t = 0; t < takes_.size(); ++t)
+    for (std::size_t part = 0; part < 2; ++part)
+      if (takes_[t].part[part].count() > 0) {
+        const std::vector<damped_line> now = lines(v, t, part);
+        visit(t, takes_[t].part[part], now, line_gram(now, 1 / takes_[t].rate_Hz, takes_[t].part[part].count()), sensitivities(v, t, part, now));
+      }
+}
+
+template <LineModel Model>
 normal_equations line_problem<Model>::linearise(const Eigen::VectorXd& v) const {
   const Eigen::Index P = model_.size();
-  normal_equations eq{Eigen::MatrixXd::Zero(P, P), Eigen::MatrixXd::Zero(P, P), Eigen::MatrixXd::Zero(P, P), Eigen::VectorXd::Zero(P)};
-  for (std::size_t t = 0; t < takes_.size(); ++t)
-    for (std::size_t part = 0; part < 2; ++part) {
-      const stretch& s = takes_[t].part[part];
-      if (s.count() == 0) continue;
-      const std::vector<damped_line> now = lines(v, t, part);
-      const projection p = project(s, takes_[t].rate_Hz, now);
-      const Eigen::MatrixXd gram = line_gram(now, 1 / takes_[t].rate_Hz, s.count());
-      const std::array<Eigen::MatrixXd, 2> to = sensitivities(v, t, part, now);
-      Eigen::VectorXd weight(4 * static_cast<Eigen::Index>(now.size()));
-      for (std::size_t n = 0; n < now.size(); ++n)
-        weight.segment<4>(4 * static_cast<Eigen::Index>(n)).setConstant(limits_(now[n].pole.imag() / (2 * std::numbers::pi)));
-      for (std::size_t c = 0; c < 2; ++c) {
-        const double sure = 1 / (noise_[c] * noise_[c]);
-        const Eigen::MatrixXd flat = p.onto_lines[c].transpose();  // 4 x N, column-major: line by line
-        eq.cost += sure * p.power[c];
-        eq.gradient += sure * to[c] * Eigen::Map<const Eigen::VectorXd>(flat.data(), flat.size());
-        eq.hessian += sure * to[c] * gram * to[c].transpose();
-        const Eigen::MatrixXd filtered = to[c] * weight.asDiagonal();
-        eq.scatter += sure * filtered * gram * filtered.transpose();
-      }
+  normal_equations eq{Eigen::MatrixXd::Zero(P, P), Eigen::MatrixXd::Zero(P, P), Eigen::VectorXd::Zero(P)};
+  each_stretch(v, [&](std::size_t t, const stretch& s, const auto& now, const Eigen::MatrixXd& gram, const auto& all) {
+    std::vector<Eigen::Index> rows;  // of parameters that this take tells of; the others' are zero
+    for (Eigen::Index p = 0; p < P; ++p)
+      if (model_.is_free(p) && model_.concerns(p, t)) rows.push_back(p);
+    const projection p = project(s, takes_[t].rate_Hz, now);
+    for (std::size_t c = 0; c < 2; ++c) {
+      const double sure = 1 / (noise_[c] * noise_[c]);
+      const Eigen::MatrixXd to = all[c](rows, Eigen::all), of_gram = to * gram, flat = p.onto_lines[c].transpose();  // flat: 4 x N, line by line
+      eq.cost += sure * p.power[c];
+      eq.gradient(rows) += sure * (to * Eigen::Map<const Eigen::VectorXd>(flat.data(), flat.size()));
+      eq.hessian(rows, rows) += sure * (of_gram * to.transpose());
     }
+  });
   for (Eigen::Index p = 0; p < P; ++p) {
     const auto [known, sd] = prior_[static_cast<std::size_t>(p)];
     if (!model_.is_free(p)) eq.hessian(p, p) = 1;
@@ -247,6 +233,20 @@ normal_equations line_problem<Model>::linearise(const Eigen::VectorXd& v) const 
   }
   eq.hessian += eq.prior;
   return eq;
+}
+
+template <LineModel Model>
+Eigen::MatrixXd line_problem<Model>::scatter(const Eigen::VectorXd& v) const {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(model_.size(), model_.size());
+  each_stretch(v, [&](std::size_t, const stretch&, const auto& now, const Eigen::MatrixXd& gram, const auto& to) {
+    Eigen::VectorXd weight(4 * static_cast<Eigen::Index>(now.size()));
+    for (std::size_t n = 0; n < now.size(); ++n) weight.segment<4>(4 * static_cast<Eigen::Index>(n)).setConstant(limits_(now[n].pole.imag() / (2 * std::numbers::pi)));
+    for (std::size_t c = 0; c < 2; ++c) {
+      const Eigen::MatrixXd filtered = to[c] * weight.asDiagonal();
+      sum += filtered * gram * filtered.transpose() / (noise_[c] * noise_[c]);
+    }
+  });
+  return sum;
 }
 
 template <LineModel Model>

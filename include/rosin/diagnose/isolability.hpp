@@ -70,15 +70,7 @@ public:
       const band limits = plan_.options.limits_for(rate, plan_.options.most_partials * value_[0]);
       const auto lines = model.lines(v, t, 1, release_s, limits, plan_.options.most_partials);
       const Eigen::Index n = samples(t);
-      out.segment(at, 2 * n).setZero();
-      line_runner(lines, 1 / rate)(static_cast<std::size_t>(n), [&](std::size_t begin, std::size_t length, const auto& re, const auto& im) {
-        for (std::size_t k = 0; k < lines.size(); ++k)
-          for (std::size_t c = 0; c < 2; ++c) {
-            const auto a = lines[k].residue[c];
-            const auto col = static_cast<Eigen::Index>(k), count = static_cast<Eigen::Index>(length);
-            out.segment(at + static_cast<Eigen::Index>(c) * n + static_cast<Eigen::Index>(begin), count) += a.real() * re.col(col).head(count) - a.imag() * im.col(col).head(count);
-          }
-      });
+      out.segment(at, 2 * n) = line_runner(lines, 1 / rate).sum(lines, static_cast<std::size_t>(n)).reshaped();
       at += 2 * n;
     }
     return out;

@@ -179,16 +179,22 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
 
 }  // namespace detail
 
-/// Fits of the effects `already` in the model and one more, the best first. `strong`: what is there is far off.
+/// Fits of the effects `already` in the model and one more, the best first. `strong`: what is there is far off; effects that no score
+/// tells of are then only tried if no other leaves mere noise.
 [[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
                                                             bool strong, std::array<double, 2> noise) {
   const detail::beginnings begin = detail::find_beginnings(data, already, catalogue, strong, noise);
   const std::vector<detail::found_start> found = strong && already.effects.empty() ? detail::strong_starts(data, already, catalogue, noise) : std::vector<detail::found_start>{};
   const auto is_found = [&](const pluck_effect& e) { return std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.id == e.id(); }); };
   std::vector<scene_fit> fits;
-  for (std::size_t i = 0; i < catalogue.size(); ++i)
-    if (begin.foremost[i] || is_found(catalogue[i]))
-      if (auto f = detail::first_fit(data, already, catalogue[i], begin.starts[i], found, strong, noise)) fits.push_back(*std::move(f));
+  bool complete = false;
+  for (const bool scored : {true, false})
+    for (std::size_t i = 0; i < catalogue.size() && !(complete && !scored); ++i)
+      if ((catalogue[i].strength >= -1) == scored && (begin.foremost[i] || is_found(catalogue[i])))
+        if (auto f = detail::first_fit(data, already, catalogue[i], begin.starts[i], found, strong, noise)) {
+          complete = complete || (strong && f->quality.inflation() == 1.0);
+          fits.push_back(*std::move(f));
+        }
   const auto better = [&](const scene_fit& a, const scene_fit& b) { return detail::price_of(a, noise) < detail::price_of(b, noise); };
   std::sort(fits.begin(), fits.end(), better);
   detail::follow_up(data, fits, strong, noise);

@@ -217,6 +217,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   const double noise = modulated ? detail::rms_of(still.rms_N) : search.noise();
   d.mismatch = detail::locate(d.data, d.base, noise);
   detail::judge(d, held.empty() ? takes : held, noise, still.samples > 0, modulated);
+  if (!d.explained) d.mismatch.place = place_of_residual(d.data, d.best, d.mismatch.take);
   return d;
 }
 

@@ -141,10 +141,14 @@ inline pluck_effect crosstalk_effect(const string_facts&) {
           [](pluck_scene& s, const double* v, int) { s.crosstalk = v[0]; }};
 }
 
-/// The wire lets go over a time; item 24.
+/// The wire lets go over a time; item 24. What was taken for the instant of release is its middle.
 inline pluck_effect slow_release_effect(const string_facts&) {
-  return {"slow-release", -1, false, {{"duration_s", 2e-7, 1e-3, 1e-5, true}}, {{3e-6}, {1e-5}, {3e-5}, {6e-5}, {1.2e-4}}, -1,
-          [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
+  pluck_effect e{"slow-release", -1, false, {{"duration_s", 2e-7, 1e-3, 1e-5, true}}, {{3e-6}, {1e-5}, {1.8e-5}, {3e-5}, {6e-5}, {1.2e-4}}, -1,
+                 [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
+  e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
+    for (std::size_t t = 0; t < layout.takes(); ++t) v[layout.at(t, pluck_layout::release)] -= std::exp(v[v.size() - 1]) / 2;
+  };
+  return e;
 }
 
 /// The wire grips the string over a width; item 25.

@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/diagnose/pluck_candidates.hpp>
 
 namespace rosin {
@@ -15,6 +16,7 @@ struct pluck_mismatch {
   std::size_t take = 0, channel = 0;
   std::array<double, 2> time_s{}, band_Hz{};
   double residual_over_noise = 0;
+  std::optional<acting_place> place{};  ///< where what no effect accounts for acts, if that is one place
 };
 
 namespace detail {

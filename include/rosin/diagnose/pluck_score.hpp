@@ -96,17 +96,8 @@ private:
       const Eigen::MatrixXd flat = p.onto_lines[c].transpose();
       w.onto[c] = Eigen::Map<const Eigen::VectorXd>(flat.data(), flat.size());
       w.gram_to[c] = w.gram * w.to[c].transpose();
-      w.residual[c] = s.data[c];
+      w.residual[c] = p.residual.col(static_cast<Eigen::Index>(c));
     }
-    line_runner(w.lines, step_s)(s.count(), [&](std::size_t begin, std::size_t length, const auto& re, const auto& im) {
-      const auto at = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(length);
-      for (std::size_t n = 0; n < w.lines.size(); ++n)
-        for (std::size_t c = 0; c < 2; ++c) {
-          const auto col = static_cast<Eigen::Index>(n);
-          const auto r = w.lines[n].residue[c];
-          w.residual[c].segment(at, rows) -= r.real() * re.col(col).head(rows) - r.imag() * im.col(col).head(rows);
-        }
-    });
     return w;
   }
 
@@ -120,19 +111,7 @@ private:
 
   /// Products of a series with the basis of damped_lines.hpp.
   [[nodiscard]] static Eigen::VectorXd onto(const std::vector<damped_line>& lines, const Eigen::VectorXd& x, double step_s) {
-    Eigen::VectorXd out(4 * static_cast<Eigen::Index>(lines.size()));
-    line_runner run(lines, step_s);
-    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(lines.size()), 4);
-    run(static_cast<std::size_t>(x.size()), [&](std::size_t begin, std::size_t length, const auto& re, const auto& im) {
-      const auto at = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(length);
-      Eigen::MatrixXd both(rows, 2);
-      both.col(0) = x.segment(at, rows);
-      both.col(1) = both.col(0).cwiseProduct(Eigen::VectorXd::LinSpaced(rows, double(at) * step_s, double(at + rows - 1) * step_s));
-      const Eigen::MatrixXd a = re.topRows(rows).transpose() * both, b = im.topRows(rows).transpose() * both;
-      sums.col(0) += a.col(0), sums.col(1) += b.col(0), sums.col(2) += a.col(1), sums.col(3) += b.col(1);
-    });
-    for (Eigen::Index n = 0; n < sums.rows(); ++n) out.segment<4>(4 * n) = sums.row(n).transpose();
-    return out;
+    return line_runner(lines, step_s).products(x).front().transpose().reshaped();
   }
 
   void add(const view& w, const std::vector<damped_line>& changed, std::size_t take, double& dr, double& dd, Eigen::VectorXd& dJ) const {

@@ -63,17 +63,9 @@ namespace detail {
 /// The residual of a fit in the ringing part of a take.
 inline std::array<Eigen::VectorXd, 2> residual_of(const line_problem<scene_plucks>& p, const Eigen::VectorXd& v, std::size_t take) {
   const auto& s = p.part(take, 1);
-  std::array<Eigen::VectorXd, 2> r = s.data;
   const std::vector<damped_line> lines = p.lines(v, take, 1);
-  line_runner(lines, 1 / p.rate_Hz(take))(s.count(), [&](std::size_t begin, std::size_t length, const auto& re, const auto& im) {
-    const auto at = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(length);
-    for (std::size_t n = 0; n < lines.size(); ++n)
-      for (std::size_t c = 0; c < 2; ++c) {
-        const auto a = lines[n].residue[c];
-        r[c].segment(at, rows) -= a.real() * re.col(static_cast<Eigen::Index>(n)).head(rows) - a.imag() * im.col(static_cast<Eigen::Index>(n)).head(rows);
-      }
-  });
-  return r;
+  const Eigen::MatrixXd model = line_runner(lines, 1 / p.rate_Hz(take)).sum(lines, s.count());
+  return {s.data[0] - model.col(0), s.data[1] - model.col(1)};
 }
 
 /// One score step for every effect that shows in the recordings alone; returns the largest step in standard deviations.
@@ -108,7 +100,7 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
   fit.quality = problem.assess(fit.value);
   const normal_equations end = problem.linearise(fit.value);
   const Eigen::MatrixXd inverse = invert_free(problem.model(), end.hessian);
-  fit.covariance = inverse * (end.prior + fit.quality.inflation() * end.scatter) * inverse;
+  fit.covariance = inverse * (end.prior + fit.quality.inflation() * problem.scatter(fit.value)) * inverse;
   Eigen::Index at = data.layout.size();
   std::size_t i = 0;
   for (const pluck_effect& e : fit.effects) {

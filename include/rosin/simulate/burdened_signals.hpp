@@ -25,9 +25,9 @@ struct rig_burden {
 
   /// An ideal rig: nothing of all this.
   [[nodiscard]] bool none() const noexcept {
-    const auto& [loads, supports, ends, axial] = string;
+    const auto& [loads, supports, ends, axial, stop] = string;
     const auto& s = sensors;
-    bool any = !loads.empty() || axial != 0 || rod.mass_kg > 0 || contact_width_m > 0 || coupling != 0 || s.crosstalk != 0 || s.skew_s != 0;
+    bool any = !loads.empty() || axial != 0 || stop.stiffness_N_m > 0 || rod.mass_kg > 0 || contact_width_m > 0 || coupling != 0 || s.crosstalk != 0 || s.skew_s != 0;
     for (std::size_t e = 0; e < 2; ++e) any = any || supports[e].mass_kg > 0 || !ends[e].modes.empty() || s.quadratic_per_N[e] != 0 || s.resonance_Hz[e] > 0;
     return !any;
   }
@@ -44,6 +44,7 @@ namespace detail {
   for (const auto& end : b.string.ends)
     for (const auto& m : end.modes)
       if (!(m.frequency_Hz > 0 && m.q > 0 && m.per_mass_per_s >= 0)) return "termination: frequency and Q must be above 0, and no mass negative";
+  if (b.string.stop.stiffness_N_m > 0 && !(b.string.stop.position > 0 && b.string.stop.position < 1)) return "obstacle: its position must lie between 0 and 1";
   const double half = b.contact_width_m / rig.string.length_m / 2;
   if (!(b.contact_width_m >= 0 && half < position && half < 1 - position)) return "contact: wider than the string has room for";
   return {};

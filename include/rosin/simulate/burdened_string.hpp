@@ -32,12 +32,20 @@ struct point_load {
   double mass_kg = 0, resistance_Ns_m = 0, stiffness_N_m = 0;
 };
 
+/// A stop beside the string that a pluck may swing against: a stiff spring that only pushes.
+struct obstacle {
+  double position = 0.5;     ///< distance from the near end / length
+  double gap_m = 0;          ///< from the string at rest, positive towards the pluck's side
+  double stiffness_N_m = 0;  ///< 0: there is none
+};
+
 /// All that the string itself carries.
 struct string_burden {
   std::vector<point_load> loads{};
   std::array<yielding_support, 2> supports{};  ///< near, far
   std::array<modal_termination, 2> ends{};     ///< the same as terminations are declared: any number of modes, masses against the string's Z
   double axial_stiffness_N = 0;                ///< E A; 0: the tension is steady
+  obstacle stop{};                             ///< in the way of plucks
 };
 
 class burdened_string {

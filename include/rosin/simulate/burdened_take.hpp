@@ -40,12 +40,39 @@ struct burdened_pluck {
   return into < p.release_duration_s ? p.force_N * (1 + std::cos(pi * into / p.release_duration_s)) / 2 : 0;
 }
 
+/// The string where it may meet a stop, and the stop's answer: solved with the motion in every step.
+class guarded_point {
+public:
+  guarded_point(const obstacle& stop, double rest_m) : stop_{stop}, side_{stop.gap_m < 0 ? -1.0 : 1.0}, y_{rest_m} {}
+
+  /// On the string, for the velocity that it would have without and its response.
+  [[nodiscard]] double force_N(double free_m_s, double mobility, double step_s) const {
+    const double over = side_ * (y_ + step_s / 2 * (v_ + free_m_s) - stop_.gap_m);
+    return over > 0 ? -side_ * stop_.stiffness_N_m * over / (1 + stop_.stiffness_N_m * mobility * step_s / 2) : 0;
+  }
+  void move(double v, double step_s) {
+    y_ += step_s / 2 * (v_ + v);
+    v_ = v;
+  }
+
+private:
+  obstacle stop_;
+  double side_, y_, v_ = 0;
+};
+
 /// A sudden release happens at the step nearest to it, and there at once: were it spread over a step, every pluck's spectrum would fall
 /// towards high frequencies by another amount (a thousandth at 50 kHz and 0.5 us), as no two releases lie alike between the steps.
 [[nodiscard]] inline burdened_steps step_pluck(const modal_rig& rig, const string_burden& burden, const burdened_pluck& pluck, double duration_s, double mode_limit_Hz,
                                                double step_s) {
-  burdened_string string{rig, burden, {pluck.position}, mode_limit_Hz, step_s};
-  string.rest_under(Eigen::VectorXd::Constant(1, pluck.force_N));
+  const bool guarded = burden.stop.stiffness_N_m > 0;
+  const std::vector<double> at = guarded ? std::vector<double>{pluck.position, burden.stop.position} : std::vector<double>{pluck.position};
+  const auto contacts = static_cast<Eigen::Index>(at.size());
+  burdened_string string{rig, burden, at, mode_limit_Hz, step_s};
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(contacts);
+  forces[0] = pluck.force_N;
+  string.rest_under(forces);
+  const double low = std::min(pluck.position, burden.stop.position), high = std::max(pluck.position, burden.stop.position);
+  guarded_point point(burden.stop, pluck.force_N * low * (1 - high) * rig.string.length_m / rig.string.tension_N);
   burdened_steps out{.step_s = step_s, .centre_left_out_m_N = string.centre_left_out_m_N()[0]};
   const auto steps = static_cast<std::size_t>(duration_s / step_s);
   out.reserve(steps);
@@ -53,9 +80,12 @@ struct burdened_pluck {
   const auto release = static_cast<std::size_t>(std::lround(std::max(0.0, pluck.release_s / step_s)));
   for (std::size_t n = 0; n < steps; ++n) {
     double force = sudden ? (n <= release ? pluck.force_N : 0) : wire_force(pluck, static_cast<double>(n) * step_s);
-    (void)string.free_velocity();
-    auto now = string.advance(Eigen::VectorXd::Constant(1, force));
-    if (sudden && n == release) now.end_N -= 0.5 * string.let_go(Eigen::VectorXd::Constant(1, force)), force /= 2;  // the middle of a jump
+    const Eigen::VectorXd free = string.free_velocity();
+    forces[0] = force;
+    if (guarded) forces[1] = point.force_N(free[1] + string.mobility()(1, 0) * force, string.mobility()(1, 1), step_s);
+    auto now = string.advance(forces);
+    if (guarded) point.move(now.surface_m_s[1], step_s);
+    if (sudden && n == release) now.end_N -= 0.5 * string.let_go(Eigen::VectorXd::Unit(contacts, 0) * force), force /= 2;  // the middle of a jump
     for (std::size_t e = 0; e < 2; ++e) out.end_N[e].push_back(now.end_N[static_cast<Eigen::Index>(e)]);
     out.force_N.push_back(force);
     out.centre_m_s.push_back(now.surface_m_s[0] - now.twist_m_s[0]);

@@ -98,3 +98,18 @@ TEST_CASE("noise under a level and under hum") {
   CHECK(rosin::noise_in(x, 20000) == doctest::Approx(1e-3).epsilon(0.03));
   CHECK(rosin::noise_in(x, 1) == 0);
 }
+
+TEST_CASE("four equal samples in a quiet stretch are chance, in the middle of a motion they are not") {
+  // Ten steps of noise, then a motion of thousands: in all of the record repeats are rare, in the noise they are not.
+  std::mt19937 random{1};
+  std::normal_distribution<double> noise{0, 10};
+  std::vector<double> x;
+  for (int i = 0; i < 500; ++i) x.push_back(std::round(noise(random)));
+  for (int i = 0; i < 17500; ++i) x.push_back(std::round(noise(random) + 8000 * std::sin(0.03 * i)));
+  auto still = x, moving = x;
+  for (std::size_t i = 237; i < 241; ++i) still[i] = still[236] + 40;
+  for (std::size_t i = 9001; i < 9005; ++i) moving[i] = moving[9000];
+  CHECK(rosin::dropouts(x, 1).empty());
+  CHECK(rosin::dropouts(still, 1).empty());
+  CHECK(rosin::dropouts(moving, 1).size() == 1);
+}

@@ -50,18 +50,27 @@ TEST_CASE("the Gram matrix is what summing the functions gives") {
       CHECK(std::abs(gram(i, j) - direct(i, j)) <= 1e-10 * std::sqrt(direct(i, i) * direct(j, j)) + 1e-14);
 }
 
-TEST_CASE("running over the samples visits each once, with the lines as they are there") {
-  constexpr std::size_t count = 1000;
-  std::size_t seen = 0;
-  rosin::line_runner(lines, step_s)(count, [&](std::size_t begin, std::size_t length, const Eigen::MatrixXd& re, const Eigen::MatrixXd& im) {
-    CHECK(begin == seen);
-    for (std::size_t i = 0; i < length; i += 37)
+TEST_CASE("sums and products of lines are what one adds up sample by sample, over several blocks and chunks") {
+  for (const std::size_t count : std::vector<std::size_t>{1, 255, 256, 1000, 20011}) {
+    const rosin::line_runner run(lines, step_s);
+    const Eigen::MatrixXd sum = run.sum(lines, count);
+    REQUIRE(sum.rows() == static_cast<Eigen::Index>(count));
+    Eigen::MatrixXd signals(sum.rows(), 2), direct = Eigen::MatrixXd::Zero(sum.rows(), 2);
+    std::array<Eigen::MatrixXd, 2> onto{Eigen::MatrixXd::Zero(4, 4), Eigen::MatrixXd::Zero(4, 4)};
+    for (Eigen::Index k = 0; k < signals.rows(); ++k) {
+      const double t = static_cast<double>(k) * step_s;
+      signals.row(k) << std::sin(0.37 * static_cast<double>(k)), std::cos(0.011 * static_cast<double>(k));
       for (std::size_t n = 0; n < lines.size(); ++n) {
-        const complex z = std::exp(lines[n].pole * (static_cast<double>(begin + i) * step_s));
-        const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(n);
-        CHECK(std::abs(complex(re(row, column), im(row, column)) - z) < 1e-11);
+        const complex z = std::exp(lines[n].pole * t);
+        for (std::size_t c = 0; c < 2; ++c) {
+          const auto col = static_cast<Eigen::Index>(c);
+          direct(k, col) += (lines[n].residue[c] * z).real();
+          onto[c].row(static_cast<Eigen::Index>(n)) += signals(k, col) * Eigen::RowVector4d(z.real(), z.imag(), t * z.real(), t * z.imag());
+        }
       }
-    seen += length;
-  });
-  CHECK(seen == count);
+    }
+    CHECK((sum - direct).cwiseAbs().maxCoeff() < 1e-10 * (1 + direct.cwiseAbs().maxCoeff()));
+    const auto products = run.products(signals);
+    for (std::size_t c = 0; c < 2; ++c) CHECK((products[c] - onto[c]).cwiseAbs().maxCoeff() < 1e-10 * (1 + onto[c].cwiseAbs().maxCoeff()));
+  }
 }

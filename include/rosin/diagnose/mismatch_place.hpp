@@ -1,0 +1,199 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Where does what a model lacks act? Whatever acts on a linear string at one place gives both ends their share of one unknown, at
+// every complex frequency s = sigma + i w (damped, so that a cut record has a transform):
+//
+//     a force at x:      r_near : r_far = A(1 - x) : A(x)      (string_response.hpp; the common determinant cancels)
+//     an end that moves: r_near : r_far = own : other
+//     a sensor:          r_near : r_far = 1 : 0
+//
+// At the right place the part of (r_near, r_far) across that direction is noise; the smallest sum of its squares tells the place.
+// Nuisances of the fit (release, strength, pitch) may go along: the same part of their columns is fitted to it.
+//
+#pragma once
+
+#include <rosin/calibrate/damped_spectrum.hpp>
+#include <rosin/diagnose/scene_fit.hpp>
+
+#include <optional>
+
+namespace rosin {
+
+/// What acts where: on the string, at one of its ends, in one of the channels.
+enum class acting { on_string, near_end, far_end, near_channel, far_channel };
+
+struct acting_place {
+  acting on = acting::on_string;
+  double position = 0.5, sd = 0;  ///< fraction of the length from the near end; on the string only
+  double left = 1;                ///< share of the mismatch's power that nothing there explains
+};
+
+/// What the model leaves of a take's first part, and what moves with its nuisances: the same samples of both channels.
+struct left_over {
+  std::array<Eigen::VectorXd, 2> force_N;
+  std::vector<std::array<Eigen::VectorXd, 2>> nuisances{};
+  double rate_Hz = 0;
+};
+
+namespace detail {
+
+/// What a fit leaves of the ringing part of a take, and how it moves with every parameter that is free there.
+inline left_over left_by(const line_problem<scene_plucks>& problem, const Eigen::VectorXd& v, std::size_t take) {
+  left_over out{residual_of(problem, v, take), {}, problem.rate_Hz(take)};
+  for (Eigen::Index p = 0; p < problem.model().size(); ++p) {
+    if (!problem.model().is_free(p) || !problem.model().concerns(p, take)) continue;
+    const double h = problem.model().step(p, v);
+    Eigen::VectorXd up = v;
+    up[p] += h;
+    auto moved = residual_of(problem, up, take);
+    for (std::size_t c = 0; c < 2; ++c) moved[c] = (moved[c] - out.force_N[c]) / h;
+    out.nuisances.push_back(std::move(moved));
+  }
+  return out;
+}
+
+/// What the channels make of forces on the ends: sensors, crosstalk, gains.
+[[nodiscard]] inline Eigen::Vector2cd recorded_of(const pluck_scene& scene, const std::array<double, 2>& gain, std::complex<double> s, std::complex<double> near, std::complex<double> far) {
+  const std::complex<double> a = near * scene.sensors[0](s), b = far * scene.sensors[1](s);
+  return {gain[0] * (a + scene.crosstalk * b), gain[1] * (b + scene.crosstalk * a)};
+}
+
+}  // namespace detail
+
+class place_search {
+public:
+  /// gain: recorded / true of each channel; noise: white, of each channel.
+  place_search(const pluck_scene& scene, std::array<double, 2> gain, const band& limits, const left_over& left, std::array<double, 2> noise)
+      : scene_{scene}, gain_{gain}, sure_{1 / noise[0], 1 / noise[1]}, line_{line_over(static_cast<std::size_t>(left.force_N[0].size()), left.rate_Hz, limits.pass_Hz)} {
+    const auto first = static_cast<std::size_t>(0.3 * scene.string.fundamental_Hz * static_cast<double>(line_.samples) / line_.rate_Hz), bins = line_.bins();
+    const std::size_t stride = std::max<std::size_t>(1, (bins - std::min(bins, first)) / most_bins);
+    for (std::size_t k = first; k < bins; k += stride) bins_.push_back(k), at_.emplace_back(scene, line_.at(k));
+    residual_ = spectra(left.force_N);
+    for (const auto& n : left.nuisances) nuisances_.push_back(spectra(n));
+    power_ = residual_.squaredNorm();
+    noise_power_ = static_cast<double>(bins_.size()) * line_.weighted_samples() / (line_.rate_Hz * line_.rate_Hz);  // of one channel
+    alike_ = std::max(1.0, faded / static_cast<double>(stride));
+  }
+
+  /// The place that leaves least.
+  [[nodiscard]] acting_place operator()() const {
+    acting_place best;
+    best.left = 2;
+    for (const acting on : {acting::near_end, acting::far_end, acting::near_channel, acting::far_channel})
+      if (const double l = across(on, 0) / power_; l < best.left) best = {on, on == acting::far_end || on == acting::far_channel ? 1.0 : 0.0, 0, l};
+    constexpr int grid = 64;
+    std::array<double, grid> cost{};
+    for (int i = 1; i < grid; ++i) cost[static_cast<std::size_t>(i)] = across(acting::on_string, static_cast<double>(i) / grid);
+    const auto low = static_cast<int>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
+    const acting_place found = refined(static_cast<double>(low - 1) / grid, static_cast<double>(low + 1) / grid);
+    return found.left < best.left ? found : best;
+  }
+
+  /// How much of each nuisance is in what is left, the action at that place taken out.
+  [[nodiscard]] Eigen::VectorXd nuisances(const acting_place& at) const {
+    const auto [left, moved] = parts_across(at.on, at.position);
+    return fitted(left, moved);
+  }
+  /// There is more than noise, which is taken for white.
+  [[nodiscard]] bool is_mismatch() const { return 2 * noise_power_ < most_noise * power_; }
+  /// What acts at that place is nearly all of it. Of the noise one of two unknowns is left.
+  [[nodiscard]] bool is_accounted_for(const acting_place& at) const { return at.left < most_left + 1.5 * noise_power_ / power_; }
+
+  /// The line of frequencies for so many samples: of the last, exp(-12) is left.
+  [[nodiscard]] static damped_line_of_frequencies line_over(std::size_t samples, double rate_Hz, double highest_Hz) {
+    return {rate_Hz, faded * rate_Hz / static_cast<double>(samples), samples, highest_Hz};
+  }
+
+private:
+  static constexpr double faded = 12, most_noise = 0.25, most_left = 0.1;
+  static constexpr std::size_t most_bins = 2000;
+  using spectrum_pair = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 2>;
+
+  [[nodiscard]] spectrum_pair spectra(const std::array<Eigen::VectorXd, 2>& x) const {
+    spectrum_pair out(static_cast<Eigen::Index>(bins_.size()), 2);
+    for (std::size_t c = 0; c < 2; ++c) {
+      const auto all = damped_spectrum(line_, {x[c].data(), static_cast<std::size_t>(x[c].size())});
+      for (std::size_t k = 0; k < bins_.size(); ++k) out(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c)) = sure_[c] * all[bins_[k]];
+    }
+    return out;
+  }
+
+  /// Shares of both channels, whitened.
+  [[nodiscard]] Eigen::Vector2cd shares(acting on, double x, std::size_t i) const {
+    if (on == acting::near_channel) return {1, 0};
+    if (on == acting::far_channel) return {0, 1};
+    const std::complex<double> s = line_.at(bins_[i]);
+    std::array<std::complex<double>, 2> n{at_[i].own_end(), at_[i].other_end()};
+    if (on == acting::far_end) std::swap(n[0], n[1]);
+    if (on == acting::on_string) n = scene_.plain_string() ? std::array{at_[i].end_force(0, x), at_[i].end_force(1, x)} : close_loop(scene_, x, s).times_determinant;
+    const Eigen::Vector2cd seen = detail::recorded_of(scene_, gain_, s, n[0], n[1]);
+    return {seen[0] * sure_[0], seen[1] * sure_[1]};
+  }
+
+  /// What lies across the shares of a place: of the mismatch, and of each nuisance (a column each); real parts, then imaginary ones.
+  [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::MatrixXd> parts_across(acting on, double x) const {
+    const auto rows = static_cast<Eigen::Index>(bins_.size()), columns = static_cast<Eigen::Index>(nuisances_.size());
+    std::pair<Eigen::VectorXd, Eigen::MatrixXd> out{Eigen::VectorXd(2 * rows), Eigen::MatrixXd(2 * rows, columns)};
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const Eigen::Vector2cd n = shares(on, x, static_cast<std::size_t>(i)).normalized();
+      const auto part = [&](const spectrum_pair& r) { return n[1] * r(i, 0) - n[0] * r(i, 1); };
+      const auto put = [&](auto&& column, std::complex<double> z) { column[i] = z.real(), column[rows + i] = z.imag(); };
+      put(out.first, part(residual_));
+      for (Eigen::Index k = 0; k < columns; ++k) put(out.second.col(k), part(nuisances_[static_cast<std::size_t>(k)]));
+    }
+    return out;
+  }
+  /// Least squares of the first by the second.
+  [[nodiscard]] static Eigen::VectorXd fitted(const Eigen::VectorXd& left, const Eigen::MatrixXd& moved) {
+    const Eigen::VectorXd scale = moved.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+    const Eigen::MatrixXd unit = moved * scale.asDiagonal();
+    Eigen::MatrixXd normal = unit.transpose() * unit;
+    normal.diagonal().array() += 1e-10;
+    return scale.asDiagonal() * normal.ldlt().solve(unit.transpose() * left);
+  }
+  /// Power across the shares of a place, with the nuisances' part taken out.
+  [[nodiscard]] double across(acting on, double x) const {
+    const auto [left, moved] = parts_across(on, x);
+    return moved.cols() > 0 ? (left - moved * fitted(left, moved)).squaredNorm() : left.squaredNorm();
+  }
+
+  /// By golden sections; the standard deviation from the curvature, misfit counted as noise.
+  [[nodiscard]] acting_place refined(double low, double high) const {
+    const double ratio = (std::sqrt(5.0) - 1) / 2;
+    double a = high - ratio * (high - low), b = low + ratio * (high - low);
+    double at_a = across(acting::on_string, a), at_b = across(acting::on_string, b);
+    while (high - low > 1e-6)
+      if (at_a < at_b) high = b, b = a, at_b = at_a, a = high - ratio * (high - low), at_a = across(acting::on_string, a);
+      else low = a, a = b, at_a = at_b, b = low + ratio * (high - low), at_b = across(acting::on_string, b);
+    const double x = (low + high) / 2, h = 2e-4, least = across(acting::on_string, x);
+    const double bend = (across(acting::on_string, x - h) + across(acting::on_string, x + h) - 2 * least) / (h * h);
+    const double unit = alike_ * std::max(least, noise_power_) / static_cast<double>(bins_.size());  // of one bin
+    return {acting::on_string, x, bend > 0 ? std::sqrt(unit / bend) : 0.5, least / power_};
+  }
+
+  pluck_scene scene_;
+  std::array<double, 2> gain_, sure_;
+  damped_line_of_frequencies line_;
+  double power_ = 0, noise_power_ = 0, alike_ = 1;  // so many neighbouring bins tell the same
+  std::vector<std::size_t> bins_;
+  std::vector<string_at> at_;
+  spectrum_pair residual_;
+  std::vector<spectrum_pair> nuisances_;
+};
+
+/// Where what a fit leaves of one of its takes acts, over the first periods; nothing where that is mostly noise or no single place explains
+/// nearly all of it.
+[[nodiscard]] inline std::optional<acting_place> place_of_residual(const scene_data& data, const scene_fit& fit, std::size_t take) {
+  constexpr double most_periods = 24, least_periods = 2;
+  const auto problem = data.problem(fit.effects, fit.value, {1000, std::min(most_periods, fit.horizon_periods), true, freedom::all}, {1, 1});
+  const pluck_scene scene = problem.model().scene(fit.value, static_cast<int>(take));
+  if (static_cast<double>(problem.part(take, 1).count()) < least_periods * problem.rate_Hz(take) / scene.string.fundamental_Hz) return std::nullopt;
+  const std::array<double, 2> gain{pluck_layout::gain(fit.value, 0), pluck_layout::gain(fit.value, 1)};
+  const place_search search(scene, gain, problem.limits(), detail::left_by(problem, fit.value, take), fit.quality.noise);
+  if (!search.is_mismatch()) return std::nullopt;
+  const acting_place found = search();
+  return search.is_accounted_for(found) ? std::optional(found) : std::nullopt;
+}
+
+}  // namespace rosin

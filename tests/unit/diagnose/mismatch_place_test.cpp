@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// What is put into a stepped modal string acts where the search says; the closed forms that are propagated back had no part in it.
+#include <rosin/diagnose/mismatch_place.hpp>
+#include <rosin/simulate/burdened_signals.hpp>
+
+#include "plucked.hpp"
+
+#include <doctest/doctest.h>
+
+namespace {
+
+/// Recordings with a burden less those without, from just behind the release on.
+rosin::left_over difference(const rosin::rig_burden& burden) {
+  const rosin::modal_pluck wire{.position = 0.3, .force_N = 1, .release_s = 0.004, .duration_s = 0.03};
+  const auto with = rosin::simulate_pluck(test::plucked_rig, burden, wire), without = rosin::simulate_pluck(test::plucked_rig, {}, wire);
+  rosin::left_over out{{}, {}, with->sample_rate_Hz};
+  const auto from = static_cast<std::size_t>(0.004 * out.rate_Hz) + 40;
+  std::mt19937_64 random{7};
+  std::normal_distribution<double> noise{0, 1e-4};
+  for (std::size_t c = 0; c < 2; ++c) {
+    const auto &a = c == 0 ? with->force_near_N : with->force_far_N, &b = c == 0 ? without->force_near_N : without->force_far_N;
+    out.force_N[c].resize(static_cast<Eigen::Index>(a.size() - from));
+    for (std::size_t i = from; i < a.size(); ++i) out.force_N[c][static_cast<Eigen::Index>(i - from)] = a[i] - b[i] + noise(random);
+  }
+  return out;
+}
+
+rosin::acting_place place_of(const rosin::rig_burden& burden) {
+  rosin::pluck_scene scene;
+  const auto& s = test::plucked_rig.string;
+  const double pi = 3.14159265358979323846;
+  scene.string.fundamental_Hz = s.fundamental_Hz, scene.string.inharmonicity = pi * pi * s.bending_stiffness_Nm2 / (s.tension_N * s.length_m * s.length_m);
+  scene.string.loss.quality = 900;
+  return rosin::place_search(scene, {1, 1}, {43e3, 54e3}, difference(burden), {1e-4, 1e-4})();
+}
+
+}  // namespace
+
+TEST_CASE("mismatch: the place of a bead and of a finger, from what they change at both ends") {
+  rosin::rig_burden bead, finger;
+  bead.string.loads = {{.position = 0.73, .mass_kg = 2e-6}};
+  finger.string.loads = {{.position = 0.41, .resistance_Ns_m = 2e-3}};
+  for (const auto& [burden, x] : {std::pair{bead, 0.73}, std::pair{finger, 0.41}}) {
+    const auto found = place_of(burden);
+    CHECK(found.on == rosin::acting::on_string);
+    CHECK(std::abs(found.position - x) < 0.002);
+    CHECK(found.left < 0.05);
+  }
+}
+
+TEST_CASE("mismatch: an end that moves, and a channel that rings by itself") {
+  rosin::rig_burden support, sensor;
+  support.string.supports[1] = {.mass_kg = 5e-3, .frequency_Hz = 2500, .quality = 12};
+  sensor.sensors.resonance_Hz[0] = 15e3, sensor.sensors.resonance_q[0] = 10;
+  const auto end = place_of(support), channel = place_of(sensor);
+  CHECK(end.on == rosin::acting::far_end);
+  CHECK(end.left < 0.05);
+  CHECK(channel.on == rosin::acting::near_channel);
+  CHECK(channel.left < 0.01);
+}
