@@ -142,6 +142,15 @@ void draw_other_string(challenge_rig& r, source& s) {
   r.base.law = rosin::velocity_curve<rosin::two_exponential_curve<double>>{r.base.steady_friction};
 }
 
+/// Under an end, a string of another pitch: weights as behind a stiff support. On request only, as below.
+hidden_effect another_string(const std::string& name, challenge_rig& r, source& s, double k) {
+  constexpr double highest_Hz = 60e3;
+  const std::size_t e = side(s);
+  const double pitch = evenly_in_log(s, 0.35, 0.9) * r.base.rig.string.fundamental_Hz, q = evenly_in_log(s, 500, 1500), stiff = evenly_in_log(s, 1e-5, 6e-5), per_mass = k * evenly_in_log(s, 0.02, 0.06);
+  for (int n = 1; n * pitch < highest_Hz; ++n) r.burden.ends[e].modes.push_back({n * pitch * std::sqrt((1 + stiff * n * n) / (1 + stiff)), q, per_mass * n * n});
+  return {name, name_of_side(e), "", {{"frequency_Hz", pitch}, {"q", q}}};
+}
+
 /// Beside the string, where it swings over to: only the strongest pluck gets there. On request only: what a seed has always drawn it still draws.
 hidden_effect beside_the_string(const std::string& name, challenge_rig& r, source& s, double k) {
   const double x = place(s, r), p = r.base.position, per_newton = std::min(p, 1 - x) * (1 - std::max(p, 1 - x)) * r.base.rig.string.length_m / r.base.rig.string.tension_N;
@@ -154,6 +163,7 @@ hidden_effect beside_the_string(const std::string& name, challenge_rig& r, sourc
 }
 
 void hide(const std::string& name, challenge_rig& r, source& s, double k) {
+  if (name == "sympathetic-string") return r.effects.push_back(another_string(name, r, s, k));
   if (name == "rattle") return r.effects.push_back(beside_the_string(name, r, s, k));
   const auto& all = hideable();
   const auto index = std::find(all.begin(), all.end(), name) - all.begin();
@@ -161,6 +171,11 @@ void hide(const std::string& name, challenge_rig& r, source& s, double k) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& hideable_on_request() {
+  static const std::vector<std::string> names{"rattle", "sympathetic-string"};
+  return names;
+}
 
 const std::vector<std::string>& hideable() {
   static const std::vector<std::string> names{

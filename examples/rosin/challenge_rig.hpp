@@ -50,6 +50,8 @@ struct challenge_choice {
 
 /// Names that can be hidden, in the order of the catalogue.
 [[nodiscard]] const std::vector<std::string>& hideable();
+/// And these, where they are asked for.
+[[nodiscard]] const std::vector<std::string>& hideable_on_request();
 [[nodiscard]] challenge_rig draw_challenge(const challenge_choice& choice);
 /// Plays all takes and writes folder/rig.toml with its recordings; a reason if that cannot be done.
 [[nodiscard]] std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const std::filesystem::path& folder, bool force);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace tool {
@@ -52,7 +53,7 @@ std::string share(std::size_t right, std::size_t all) {
 }
 
 double median(std::vector<double> x) {
-  if (x.empty()) return NAN;
+  if (x.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
   return x[x.size() / 2];
 }

@@ -3,6 +3,7 @@
 #include "diagnose_parts.hpp"
 
 #include <fstream>
+#include <limits>
 
 namespace tool {
 
@@ -26,8 +27,8 @@ std::vector<rosin::pluck_effect> effects_of(const json& diagnosis, const std::ve
 /// A value of the calibration; NaN where it is not there.
 std::array<double, 2> value_of(const json& calibration, const std::string& name) {
   const auto it = calibration.find(name);
-  if (it == calibration.end() || !it->is_object()) return {NAN, 0};
-  return {it->value("value", NAN), it->value("sd", 0.0)};
+  if (it == calibration.end() || !it->is_object()) return {std::numeric_limits<double>::quiet_NaN(), 0};
+  return {it->value("value", std::numeric_limits<double>::quiet_NaN()), it->value("sd", 0.0)};
 }
 
 /// A diagnosis may have left a pluck out that contradicts the others, and fitted one that was to be held out.

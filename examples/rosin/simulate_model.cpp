@@ -55,6 +55,14 @@ void put_ac_coupling(parameters_of& p, simulation_plan& plan) {
     if (c.declared.quantity == rosin::quantity::termination_force) c.declared.ac_coupled_Hz = p("cutoff_Hz");
 }
 
+/// Its resonances under an end, as sympathetic_effect.hpp has them.
+void put_other_string(const found_effect& e, parameters_of& p, simulation_plan& plan) {
+  constexpr double highest_Hz = 60e3;
+  const double first = p("frequency_Hz"), b = p("string_inharmonicity"), per_mass = plan.rig.string.impedance_Ns_m() / p("mass_kg");
+  for (int n = 1; n <= 300; ++n)
+    if (const double f = n * first * std::sqrt((1 + b * n * n) / (1 + b)); f < highest_Hz) plan.burden.string.ends[p.side(e.end)].modes.push_back({f, p("q"), per_mass * std::pow(n, p("slope"))});
+}
+
 /// What is found in [friction] or in the fit of the string has been put in already.
 void put_nothing(const found_effect&, parameters_of&, simulation_plan&) {}
 
@@ -74,6 +82,7 @@ const std::map<std::string, put>& can_be_put() {
        [](effect e, get p, plan to) {
          to.burden.string.ends[p.side(e.end)].modes.push_back({p("frequency_Hz"), p("q"), to.rig.string.impedance_Ns_m() / p("mass_kg")});
        }},
+      {"sympathetic-string", [](effect e, get p, plan to) { put_other_string(e, p, to); }},
       {"ac-coupling", [](effect, get p, plan to) { put_ac_coupling(p, to); }},
       {"sensor-resonance",
        [](effect e, get p, plan to) {

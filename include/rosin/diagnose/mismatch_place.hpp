@@ -30,7 +30,7 @@ struct acting_place {
 };
 
 /// What the model leaves of a take's first part, and what moves with its nuisances: the same samples of both channels.
-struct left_over {
+struct unexplained_part {
   std::array<Eigen::VectorXd, 2> force_N;
   std::vector<std::array<Eigen::VectorXd, 2>> nuisances{};
   double rate_Hz = 0;
@@ -39,8 +39,8 @@ struct left_over {
 namespace detail {
 
 /// What a fit leaves of the ringing part of a take, and how it moves with every parameter that is free there.
-inline left_over left_by(const line_problem<scene_plucks>& problem, const Eigen::VectorXd& v, std::size_t take) {
-  left_over out{residual_of(problem, v, take), {}, problem.rate_Hz(take)};
+inline unexplained_part left_by(const line_problem<scene_plucks>& problem, const Eigen::VectorXd& v, std::size_t take) {
+  unexplained_part out{residual_of(problem, v, take), {}, problem.rate_Hz(take)};
   for (Eigen::Index p = 0; p < problem.model().size(); ++p) {
     if (!problem.model().is_free(p) || !problem.model().concerns(p, take)) continue;
     const double h = problem.model().step(p, v);
@@ -64,7 +64,7 @@ inline left_over left_by(const line_problem<scene_plucks>& problem, const Eigen:
 class place_search {
 public:
   /// gain: recorded / true of each channel; noise: white, of each channel.
-  place_search(const pluck_scene& scene, std::array<double, 2> gain, const band& limits, const left_over& left, std::array<double, 2> noise)
+  place_search(const pluck_scene& scene, std::array<double, 2> gain, const band& limits, const unexplained_part& left, std::array<double, 2> noise)
       : scene_{scene}, gain_{gain}, sure_{1 / noise[0], 1 / noise[1]}, line_{line_over(static_cast<std::size_t>(left.force_N[0].size()), left.rate_Hz, limits.pass_Hz)} {
     const auto first = static_cast<std::size_t>(0.3 * scene.string.fundamental_Hz * static_cast<double>(line_.samples) / line_.rate_Hz), bins = line_.bins();
     const std::size_t stride = std::max<std::size_t>(1, (bins - std::min(bins, first)) / most_bins);

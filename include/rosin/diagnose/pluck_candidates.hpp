@@ -105,6 +105,30 @@ struct beginnings {
   std::vector<bool> foremost;
 };
 
+/// Beginnings of effects that are sought in what is left over, by the score over the whole record.
+inline void seek_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise, beginnings& out) {
+  if (std::none_of(catalogue.begin(), catalogue.end(), [](const pluck_effect& e) { return bool(e.seek); })) return;
+  auto problem = data.problem(already.effects, already.value, {}, noise);
+  std::size_t strongest = 0;
+  const auto strength = [&](std::size_t t) { return already.value[data.layout.at(t, pluck_layout::strength)]; };
+  for (std::size_t t = 1; t < problem.takes(); ++t)
+    if (strength(t) > strength(strongest)) strongest = t;
+  const auto residual = residual_of(problem, already.value, strongest);
+  const ringing_string string = problem.model().string(already.value);
+  std::vector<double> own;
+  for (int n = 1; string.partial_Hz(n) < problem.limits().stop_Hz && n < 1000; ++n) own.push_back(string.partial_Hz(n));
+  std::optional<pluck_score> test;
+  for (std::size_t i = 0; i < catalogue.size(); ++i) {
+    pluck_effect e = catalogue[i];
+    if (!e.seek) continue;
+    e.starts = e.seek(residual, problem.rate_Hz(strongest), own);
+    if (e.starts.empty()) continue;
+    if (!test) problem.set_noise(problem.assess(already.value).noise), test.emplace(problem, already.value);
+    out.starts[i] = best_starts(*test, scene_plucks(data.layout, data.guess.ac_coupled_Hz, with_one_more(already.effects, e)), e, 2);
+    out.foremost[i] = !out.starts[i].empty();
+  }
+}
+
 inline beginnings find_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue, bool strong, std::array<double, 2> noise) {
   beginnings out{std::vector<std::vector<scored_start>>(catalogue.size()), std::vector<bool>(catalogue.size(), false)};
   const std::vector<fit_stage> looks = strong ? std::vector<fit_stage>{{1000, 3, true}, {1000, 8, true}, {12, 8, false}} : std::vector<fit_stage>{{}};
@@ -117,6 +141,7 @@ inline beginnings find_beginnings(const scene_data& data, const scene_fit& alrea
     const pluck_score test(problem, value);
     std::vector<double> gains(catalogue.size(), 0.0);
     for (std::size_t i = 0; i < catalogue.size(); ++i) {
+      if (catalogue[i].seek) continue;
       if (catalogue[i].strength < -1) {  // begins from nothing
         if (out.starts[i].empty()) out.starts[i].push_back({catalogue[i].starts[0], 0});
         out.foremost[i] = true;
@@ -130,6 +155,7 @@ inline beginnings find_beginnings(const scene_data& data, const scene_fit& alrea
     }
     note_foremost(gains, strong ? 6 : 12, out.foremost);
   }
+  seek_beginnings(data, already, catalogue, noise, out);
   return out;
 }
 
@@ -144,8 +170,9 @@ inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fi
     if (cost < 1e299 && (!best || cost < cost_of(*best, noise))) best = std::move(f);
   };
   const auto from = [&](const scored_start& s) { return extended(data.layout, already.value, e, s.values); };
-  if (!strong) {
-    for (const auto& s : starts) keep(fit_scene(data, effects, from(s), {{}}, noise));
+  if (!strong || e.seek) {
+    const std::vector<fit_stage> stages = strong ? std::vector<fit_stage>{{1000, 24, true}, {1000, 80, true}, {}} : std::vector<fit_stage>{{}};
+    for (const auto& s : starts) keep(fit_scene(data, effects, from(s), stages, noise));
     return best;
   }
   for (const auto& s : starts) keep(fit_scene(data, effects, from(s), {{6, 5, false}, {12, 8, false}}, noise));

@@ -9,7 +9,8 @@
 //     worth          a further effect takes away at least two thirds of what the model so far leaves beyond the noise, and that is
 //                    at least a hundredth (in amplitude) of what there was to explain: no model of a bead is exact either.
 //
-// Explained is what leaves on such takes no more than a quarter of the noise beyond it, or 12 % of what there was. A mismatch needs no name: it
+// Explained is what leaves on such takes no more than a quarter of the noise beyond it, or 12 % of what there was
+// and six times the noise. A mismatch needs no name: it
 // is also where they are off by more than 0.6 of the noise, and where what rings is noisier than what was held.
 //
 // Two effects found one after the other may stand in one another's place; each is then taken out and sought anew.
@@ -23,6 +24,7 @@
 #include <rosin/diagnose/clock_drift_effect.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/pluck_prediction.hpp>
+#include <rosin/diagnose/sympathetic_effect.hpp>
 
 namespace rosin {
 
@@ -59,10 +61,10 @@ inline int free_parameters(const scene_fit& f) {
   return k;
 }
 
-/// Whether there is a mismatch of which the best of `fits` leaves more than half (in amplitude): over all of a record, what is small
-/// per period may have turned partials too far for a score test.
-inline bool leaves_much(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits, std::array<double, 2> noise) {
-  if (fits.empty() || !(fits.front().quality.inflation() > 1.5)) return false;
+/// Whether there is a mismatch, of more than `tolerated` times the noise's power, of which the best of `fits` leaves more than half (in
+/// amplitude): over all of a record, what is small per period may have turned partials too far for a score test.
+inline bool leaves_much(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits, std::array<double, 2> noise, double tolerated) {
+  if (fits.empty() || !(fits.front().quality.inflation() > tolerated)) return false;
   const scene_fit plain = fit_scene(data, before.effects, before.value, {{1000, fits.front().horizon_periods, true}}, noise);
   double expected = 0;
   for (const double n : fits.front().quality.samples) expected += n;
@@ -101,7 +103,7 @@ private:
       if (std::none_of(now_.effects.begin(), now_.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);
     const bool strong = round == 0 ? now_.horizon_periods < 1e8 || now_.quality.residual_ratio[0] > 0.05 : now_.quality.residual_ratio[0] > 0.1;
     std::vector<scene_fit> fits = one_more_effect(d_.data, now_, catalogue, strong, weigh_);
-    if (round == 0 && !strong && leaves_much(d_.data, now_, fits, weigh_)) fits = one_more_effect(d_.data, now_, catalogue, true, weigh_);
+    if (!strong && leaves_much(d_.data, now_, fits, weigh_, round == 0 ? 1.5 : 9)) fits = one_more_effect(d_.data, now_, catalogue, true, weigh_);
     return fits;
   }
   void leave_alone() {
@@ -177,7 +179,7 @@ inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<plu
 /// Before and after on takes that were not fitted, and whether that is an explanation. `noise_seen`: before the releases as well; much noise
 /// that nothing else bears out may be what the model leaves.
 inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool noise_seen, bool modulated) {
-  constexpr double much_noise = 0.05;
+  constexpr double much_noise = 0.05, most_left = 6;
   scene_fit plain = d.base;
   plain.horizon_periods = d.best.horizon_periods;
   for (const pluck_take& take : judged) {
@@ -189,7 +191,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   const auto beyond_noise = [&](double x) { return std::sqrt(std::max(0.0, x * x - d.floor * d.floor)); };
   const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
   const bool doubtful = !noise_seen && d.floor > much_noise;
-  const bool complete = !doubtful && ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, 0.12 * was));
+  const bool complete = !doubtful && ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
   d.mismatched = d.mismatched || left > 1.5 || modulated || doubtful || was > 0.6 * d.floor;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   if (d.explained || excess <= 0.5 * was) return;
@@ -226,6 +228,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   std::vector<pluck_effect> all = pluck_effects(facts);
   for (const int channel : {0, 1}) all.push_back(sensor_nonlinearity_effect(facts, channel));
   all.push_back(clock_drift_effect(facts));
+  for (const int end : {0, 1}) all.push_back(sympathetic_string_effect(facts, end));
   if (facts.impedance_Ns_m > 0 && facts.length_m > 0) {
     all.push_back(tension_modulation_effect(facts, limits));
     for (const int channel : {0, 1}) all.push_back(phantom_partials_effect(facts, limits, channel));

@@ -49,6 +49,8 @@ struct pluck_effect {
   std::function<void(pluck_scene&, const pluck_layout&, const Eigen::VectorXd& v, std::size_t take, double value)> retune{};
   /// Nuisances that have to go along when the effect enters the model.
   std::function<void(const pluck_layout&, Eigen::VectorXd& v)> rebase{};
+  /// The search then begins where what a fit leaves of both channels of a take tells of it (the string's own partials are given), not at `starts`.
+  std::function<std::vector<std::vector<double>>(const std::array<Eigen::VectorXd, 2>& residual, double rate_Hz, const std::vector<double>& own_Hz)> seek{};
   double horizon_periods = 1e9;  ///< the model of the effect holds for so long
 
   [[nodiscard]] std::string id() const {

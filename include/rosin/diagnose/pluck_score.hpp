@@ -133,6 +133,8 @@ private:
         if (dist < apart && same_channel) apart = dist, best = j;
         if (dist < 1e-3 * near && same_channel) break;
       }
+      const auto is_closer = [&](const damped_line& other) { return &other != &line && std::abs(other.pole - w.lines[best].pole) < apart; };
+      if (apart > 1e-3 * near && best < w.lines.size() && std::any_of(changed.begin(), changed.end(), is_closer)) best = w.lines.size();  // a new line beside an old one
       if (best == w.lines.size()) {
         fresh.push_back(line);
         continue;

@@ -42,7 +42,7 @@ namespace detail {
 
 /// A pluck as the others foretell it from its first instants, and what is left.
 struct foretold {
-  left_over left;
+  unexplained_part left;
   std::array<Eigen::VectorXd, 2> recorded;
   pluck_scene scene;
   std::array<double, 2> gain{};

@@ -18,15 +18,20 @@ namespace rosin {
 
 namespace detail {
 
-/// D(s), times the polynomials of the ends' modes: entire around the roots that are sought.
-inline std::complex<double> characteristic(const pluck_scene& scene, std::complex<double> s, double strength) {
-  std::complex<double> value = loop_determinant(scene, s, strength);
+/// The polynomials of the ends' modes that lie within `reach` of a place: zero where a weak mode all but has its pole.
+inline std::complex<double> mode_zeros(const pluck_scene& scene, std::complex<double> s, std::complex<double> around, double reach) {
+  std::complex<double> value = 1;
   for (const yielding_end& end : scene.ends)
     for (const admittance_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
-      value *= (s * s + s * w / m.q + w * w) / (w * w);
+      if (std::abs(w - around.imag()) < reach) value *= (s * s + s * w / m.q + w * w) / (w * w);
     }
   return value;
+}
+
+/// D(s), times the polynomials of the ends' modes: entire around the roots that are sought.
+inline std::complex<double> characteristic(const pluck_scene& scene, std::complex<double> s, double strength) {
+  return loop_determinant(scene, s, strength) * mode_zeros(scene, s, s, 1e300);
 }
 
 /// One Aberth sweep over the roots that are not settled yet; returns the largest correction relative to the spacing.
@@ -108,9 +113,10 @@ inline bool stayed(const std::vector<std::complex<double>>& roots, const std::ve
   for (const std::complex<double> s : poles) {
     const std::complex<double> h(0, 1e-4 * spacing);
     const loop_response above = close_loop(scene, position, s + h), below = close_loop(scene, position, s - h);
-    const std::complex<double> over = detail::reciprocal((above.determinant - below.determinant) * s) * (-2.0 * h);
+    const std::complex<double> up = detail::mode_zeros(scene, s + h, s, spacing), down = detail::mode_zeros(scene, s - h, s, spacing);  // the loop as such is straight only far from a mode
+    const std::complex<double> over = detail::reciprocal((above.determinant * up - below.determinant * down) * s) * (-2.0 * h);
     damped_line line{s, {}};
-    for (std::size_t e = 0; e < 2; ++e) line.residue[e] = over * (above.times_determinant[e] + below.times_determinant[e]);
+    for (std::size_t e = 0; e < 2; ++e) line.residue[e] = over * (above.times_determinant[e] * up + below.times_determinant[e] * down);
     lines.push_back(line);
   }
   return lines;

@@ -48,9 +48,9 @@ TEST_CASE("a channel that does not step by a fifth of the force holds no release
 
 TEST_CASE("the scale is compared with the wire's strength, tolerances allowed for") {
   for (const auto& [gain, wrong] : {std::pair{1.0, false}, {1.1, false}, {0.9, false}, {0.5, true}, {2.0, true}}) {
-    CAPTURE(gain);
     test::pluck p;
     p.near_gain = gain;
+    CAPTURE(p.near_gain);
     const auto r = test::two_force_rig(p);
     const auto s = test::pluck_signals(r, p);
     auto found = steps_of(r, s);

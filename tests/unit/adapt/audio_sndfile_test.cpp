@@ -38,8 +38,10 @@ void write_as(const std::string& path, int format, const std::vector<short>& sam
 
 TEST_CASE("what was written is read back to half a step, in every format") {
   const test::temporary_folder folder;
-  for (const auto& [bits, is_float] : {std::pair{16, false}, {24, false}, {32, false}, {32, true}, {64, true}})
+  for (const auto& format : {std::pair{16, false}, {24, false}, {32, false}, {32, true}, {64, true}})
     for (const std::size_t channels : {1U, 2U, 5U}) {
+      const int bits = format.first;
+      const bool is_float = format.second;
       CAPTURE(bits);
       CAPTURE(is_float);
       CAPTURE(channels);

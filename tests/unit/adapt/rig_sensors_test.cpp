@@ -37,9 +37,10 @@ TEST_CASE("[channels]: each key, its type, range and name") {
 }
 
 TEST_CASE("every quantity has its own scale") {
-  for (const auto& [quantity, key] : {std::pair{"string-displacement", "metres_per_full_scale"}, {"sound", "pascals_per_full_scale"},
+  for (const auto& row : {std::pair{"string-displacement", "metres_per_full_scale"}, {"sound", "pascals_per_full_scale"},
                                       {"normal-force", "newtons_per_full_scale"}, {"bow-speed", "metres_per_second_per_full_scale"}}) {
-    CAPTURE(quantity);
+    const auto [quantity, key] = row;
+    CAPTURE(row.first);
     const auto text = test::changed("quantity = \"bow-speed\", metres_per_second_per_full_scale = 1",
                                     std::string{"quantity = \""} + quantity + "\", " + key + " = 3");
     const auto r = rosin::parse_rig(text, "rig.toml");

@@ -10,10 +10,10 @@
 namespace {
 
 /// Recordings with a burden less those without, from just behind the release on.
-rosin::left_over difference(const rosin::rig_burden& burden) {
+rosin::unexplained_part difference(const rosin::rig_burden& burden) {
   const rosin::modal_pluck wire{.position = 0.3, .force_N = 1, .release_s = 0.004, .duration_s = 0.03};
   const auto with = rosin::simulate_pluck(test::plucked_rig, burden, wire), without = rosin::simulate_pluck(test::plucked_rig, {}, wire);
-  rosin::left_over out{{}, {}, with->sample_rate_Hz};
+  rosin::unexplained_part out{{}, {}, with->sample_rate_Hz};
   const auto from = static_cast<std::size_t>(0.004 * out.rate_Hz) + 40;
   std::mt19937_64 random{7};
   std::normal_distribution<double> noise{0, 1e-4};
