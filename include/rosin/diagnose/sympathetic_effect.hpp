@@ -104,8 +104,8 @@ inline pluck_effect sympathetic_string_effect(const string_facts& f, int end) {
                  {{"frequency_Hz", 30, 3000, 1e-6, true}, {"q", 20, 20000, 1e-4, true}, {"per_mass_per_kg", 0, 1e4 / Z, 1e-4 / Z}, {"slope", -2, 4, 1e-4}, {"string_inharmonicity", -1e-5, 3e-3, 1e-8}}, {}, 2,
                  [Z, end, highest](pluck_scene& s, const double* v, int) {
                    for (int n = 1; n <= most_modes; ++n)
-                     if (const double f = n * v[0] * std::sqrt((1 + v[4] * n * n) / (1 + v[4])); f < highest)
-                       s.ends[static_cast<std::size_t>(end)].modes.push_back({f, v[1], v[2] * Z * std::pow(n, v[3])});
+                     if (const double at = n * v[0] * std::sqrt((1 + v[4] * n * n) / (1 + v[4])); at < highest)
+                       s.ends[static_cast<std::size_t>(end)].modes.push_back({at, v[1], v[2] * Z * std::pow(n, v[3])});
                  }};
   for (const double ratio : {0.5, 0.749, 1.335}) e.starts.push_back({ratio * f.fundamental_Hz, 1000, 1e-4 / Z, 2, 0});  // for what can be told of a rig in advance
   e.seek = [Z](const std::array<Eigen::VectorXd, 2>& residual, double rate_Hz, const std::vector<double>& own_Hz) {
