@@ -85,7 +85,7 @@ struct rig_diagnosis {
   std::string take, channel;
   std::optional<std::array<double, 2>> time_s, band_Hz;
   std::optional<double> position;
-  std::string acts;  ///< what is left of an unexplained mismatch: "at 0.62 of the string's length", "at the near end", "in the far channel"
+  std::string acts;  ///< what is left of an unexplained mismatch: "on the string at 0.62 +- 0.01 of its length", "at the near end", "in the far channel"
   double residual_over_noise = 0;
   std::optional<residual_picture> residual;
   std::vector<std::string> assumed, warnings;
