@@ -35,7 +35,7 @@ struct pluck_take {
 /// What is known beforehand.
 struct pluck_guess {
   double fundamental_Hz = 0;                          ///< within 2 %
-  double inharmonicity = 0;                           ///< 0: unknown
+  double inharmonicity = 0;                           ///< within 60 %; 0: unknown
   double quality = 1000;
   std::array<double, 2> gain_tolerance{0.05, 0.05};   ///< relative limits
   std::array<double, 2> ac_coupled_Hz{0, 0};          ///< 0: DC coupled
@@ -142,6 +142,7 @@ public:
   [[nodiscard]] knowledge prior(Eigen::Index p, const std::vector<pluck_take>& takes, const pluck_guess& guess) const {
     if (p == gain_near || p == gain_far) return {0, guess.gain_tolerance[static_cast<std::size_t>(p - gain_near)] / 2};
     if (p == convention) return {0, 1.5};  // conventions lie between -1 and 1
+    if (p == inharmonicity && options_.stiffness && guess.inharmonicity > 0) return {guess.inharmonicity, 0.3 * guess.inharmonicity};  // for what does not tell it yet: short looks, few partials
     if (p < at(0, 0) || !is_scale(p)) return {0, 0};
     const pluck_take& take = takes[static_cast<std::size_t>(p - at(0, 0)) / take_size];
     return {std::log(take.strength_N), take.strength_tolerance / 2};

@@ -204,6 +204,16 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
   }
 }
 
+/// A strong effect once more from the first periods on, in small steps: over all of the record the fit may have come to rest with partials a
+/// little off.
+inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<double, 2> noise) {
+  std::vector<fit_stage> stages;
+  for (double periods = 1.5; periods < std::min(100.0, fit.horizon_periods); periods *= 2) stages.push_back({1000, periods, true});
+  stages.push_back({1000, fit.horizon_periods, true, freedom::all});
+  scene_fit again = fit_scene(data, fit.effects, fit.value, stages, noise);
+  return cost_of(again, noise) < cost_of(fit, noise) ? again : fit;
+}
+
 }  // namespace detail
 
 /// Fits of the effects `already` in the model and one more, the best first. `strong`: what is there is far off; effects that no score
@@ -226,6 +236,7 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
   std::sort(fits.begin(), fits.end(), better);
   detail::follow_up(data, fits, strong, noise);
   std::sort(fits.begin(), fits.end(), better);
+  if (strong && !fits.empty() && fits.front().quality.inflation() > 1.5) fits.front() = detail::rewound(data, std::move(fits.front()), noise);
   detail::prefer_over_one_horizon(data, fits, noise);
   return fits;
 }

@@ -45,6 +45,14 @@ TEST_CASE("tolerances are limits: two standard deviations") {
   CHECK(l.prior(layout::fundamental, three_takes(), guess).sd == 0);
 }
 
+TEST_CASE("a declared stiffness holds the inharmonicity loosely, as long as that is free") {
+  const rosin::pluck_guess guess{.fundamental_Hz = 600, .inharmonicity = 6e-5};
+  CHECK(layout(three_takes(), {}).prior(layout::inharmonicity, three_takes(), guess).value == 6e-5);
+  CHECK(layout(three_takes(), {}).prior(layout::inharmonicity, three_takes(), guess).sd == doctest::Approx(1.8e-5));
+  CHECK(layout(three_takes(), {}).prior(layout::inharmonicity, three_takes(), {.fundamental_Hz = 600}).sd == 0);
+  CHECK(layout(three_takes(), {.stiffness = false}).prior(layout::inharmonicity, three_takes(), guess).sd == 0);
+}
+
 TEST_CASE("options fix parameters; the inverse leaves them out") {
   const layout l(three_takes(), {.stiffness = false, .internal_loss = false});
   CHECK_FALSE(l.is_free(layout::inharmonicity));
