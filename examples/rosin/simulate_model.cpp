@@ -59,7 +59,7 @@ void put_ac_coupling(parameters_of& p, simulation_plan& plan) {
 void put_other_string(const found_effect& e, parameters_of& p, simulation_plan& plan) {
   constexpr double highest_Hz = 60e3;
   const double first = p("frequency_Hz"), b = p("string_inharmonicity"), per_mass = plan.rig.string.impedance_Ns_m() / p("mass_kg");
-  for (int n = 1; n <= 300; ++n)
+  for (int n = 1; n <= 100; ++n)
     if (const double f = n * first * std::sqrt((1 + b * n * n) / (1 + b)); f < highest_Hz) plan.burden.string.ends[p.side(e.end)].modes.push_back({f, p("q"), per_mass * std::pow(n, p("slope"))});
 }
 

@@ -124,7 +124,7 @@ inline void seek_beginnings(const scene_data& data, const scene_fit& already, co
     e.starts = e.seek(residual, problem.rate_Hz(strongest), own);
     if (e.starts.empty()) continue;
     if (!test) problem.set_noise(problem.assess(already.value).noise), test.emplace(problem, already.value);
-    out.starts[i] = best_starts(*test, scene_plucks(data.layout, data.guess.ac_coupled_Hz, with_one_more(already.effects, e)), e, 2);
+    out.starts[i] = best_starts(*test, scene_plucks(data.layout, data.guess.ac_coupled_Hz, with_one_more(already.effects, e)), e, 1);
     out.foremost[i] = !out.starts[i].empty();
   }
 }
@@ -171,7 +171,7 @@ inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fi
   };
   const auto from = [&](const scored_start& s) { return extended(data.layout, already.value, e, s.values); };
   if (!strong || e.seek) {
-    const std::vector<fit_stage> stages = strong ? std::vector<fit_stage>{{1000, 24, true}, {1000, 80, true}, {}} : std::vector<fit_stage>{{}};
+    const std::vector<fit_stage> stages = strong ? std::vector<fit_stage>{{1000, 24, true}, {}} : std::vector<fit_stage>{{}};
     for (const auto& s : starts) keep(fit_scene(data, effects, from(s), stages, noise));
     return best;
   }
@@ -236,7 +236,7 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
   std::sort(fits.begin(), fits.end(), better);
   detail::follow_up(data, fits, strong, noise);
   std::sort(fits.begin(), fits.end(), better);
-  if (strong && !fits.empty() && fits.front().quality.inflation() > 1.5) fits.front() = detail::rewound(data, std::move(fits.front()), noise);
+  if (strong && !fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek) fits.front() = detail::rewound(data, std::move(fits.front()), noise);
   detail::prefer_over_one_horizon(data, fits, noise);
   return fits;
 }

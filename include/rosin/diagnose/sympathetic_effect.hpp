@@ -98,7 +98,7 @@ inline std::vector<comb_of_peaks> foreign_combs(const foreign_peaks& found, cons
 
 /// Another string that rings along at one end; Z / M is that of its first mode.
 inline pluck_effect sympathetic_string_effect(const string_facts& f, int end) {
-  constexpr int most_modes = 300;
+  constexpr int most_modes = 100;  // as far as they can be told; a fit takes seconds with these
   const double Z = f.impedance_Ns_m > 0 ? f.impedance_Ns_m : 1.0, highest = f.highest_Hz;
   pluck_effect e{"sympathetic-string", end, true,
                  {{"frequency_Hz", 30, 3000, 1e-6, true}, {"q", 20, 20000, 1e-4, true}, {"per_mass_per_kg", 0, 1e4 / Z, 1e-4 / Z}, {"slope", -2, 4, 1e-4}, {"string_inharmonicity", -1e-5, 3e-3, 1e-8}}, {}, 2,
