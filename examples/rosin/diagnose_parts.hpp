@@ -46,9 +46,9 @@ struct plucks_told {
 [[nodiscard]] rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, std::vector<std::string>& warnings,
                                                              const std::vector<std::string>& without = {});
 
-/// A pluck that contradicts the others is what the diagnosis then is about; true if what makes it odd is found. impedance_Ns_m: 0 if an
-/// obstacle is not to be looked for.
-bool add_odd(const rosin::odd_pluck& odd, double impedance_Ns_m, rig_diagnosis& d);
+/// A pluck that contradicts the others is what the diagnosis then is about; true if what makes it odd is found. An obstacle is looked for
+/// where the catalogue knows it and the string's impedance is known.
+bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, bool knows_rattle, rig_diagnosis& d);
 /// Samples that the checks found lost in any take; such a take is in no fit.
 void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, provenance& from, rig_diagnosis& d);
 /// Plucks that were made clearly elsewhere than declared.
@@ -67,5 +67,10 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
 /// The contact as the rig file declares it.
 [[nodiscard]] rosin::contact_model declared_contact(const rosin::rig& rig);
 [[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const rosin::contact_model& model);
+
+/// One effect of the contact after the other, under strokes whose tension is the plucks' times 1 + tension_drift; true if the contact is as the model then has it. Where one was found in what sticks, that has
+/// to move by at most half of what it did, or by no more than noise makes it; else none is named.
+bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, double tension_drift, const std::vector<std::string>& without,
+                     rig_diagnosis& d);
 
 }  // namespace tool

@@ -8,10 +8,6 @@ namespace tool {
 
 namespace {
 
-constexpr int most_contact_effects = 2;
-constexpr double further_tone_share = 0.05;     ///< of what was gained so far: no model of a contact is exact either,
-constexpr double further_give_share = 0.2;      ///< and what one model of its give leaves another one takes up
-constexpr double left_of_sticking = 0.5;        ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
 constexpr double drift_fault = 3e-4;           ///< beside noise, by what else the two versions part; found on rigs of another simulator
 
 /// A converter that oversamples by four may smear a release over a quarter of its step: a variance of (T/4)^2 / 12 beside the d^2 (1/4 - 2/pi^2)
@@ -43,8 +39,7 @@ missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, con
     const double v = rosin::to_physical(q, p.best.value[at]), sd = p.best.sd[at] * (q.logarithmic ? v : 1);
     if (q.late) continue;
     if (q.name == "amplitude") {
-      const std::size_t in_take = (i - 1) % 16;  // re and im of near, of far; four harmonics
-      if (q.take == 0 && in_take < 4) hum[in_take / 2] = std::hypot(hum[in_take / 2], v), hum_sd[in_take / 2] = sd;
+      if (const std::size_t of_first = i - 1; of_first < 4) hum[of_first / 2] = std::hypot(hum[of_first / 2], v), hum_sd[of_first / 2] = sd;  // the fundamental in the first take
       continue;
     }
     m.parameters.push_back(in_si(q.name, v, sd, values, p.best.value[0]));
@@ -57,15 +52,6 @@ missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, con
   }
   for (const auto& q : m.parameters)
     if (q.name == "position") m.position = q.value;
-  m.statement = statement_of(m);
-  return m;
-}
-
-missing_effect described(const rosin::contact_hypothesis& h, double probability) {
-  missing_effect m;
-  m.effect = h.effect;
-  m.probability = std::clamp(probability, 0.0, 1.0);
-  for (const auto& p : h.parameters) m.parameters.push_back({p.name, p.value, p.sd});
   m.statement = statement_of(m);
   return m;
 }
@@ -153,113 +139,6 @@ bool stretched_by_motion(const rosin::tension_drift& t, const rosin::pluck_diagn
   return t.relative < 2 * most;
 }
 
-/// A ripple at a multiple of a mains hum that was found is what is left of the hum.
-bool is_hum(const rosin::contact_hypothesis& h, const rig_diagnosis& d) {
-  const auto frequency = [](const auto& parameters) {
-    for (const auto& p : parameters)
-      if (p.name == "frequency_Hz") return p.value;
-    return 0.0;
-  };
-  if (h.effect != "speed-ripple" && h.effect != "normal-force-ripple") return false;
-  return std::any_of(d.missing.begin(), d.missing.end(), [&](const missing_effect& m) {
-    const double mains = m.effect == "mains-hum" ? frequency(m.parameters) : 0, ripple = frequency(h.parameters);
-    return mains > 0 && std::abs(ripple - mains * std::round(ripple / mains)) < 2;
-  });
-}
-
-/// Before and floor are those of what the contact is judged by.
-void judge_by(const std::string& statistic, const rosin::contact_findings& found, rig_diagnosis& d) {
-  d.metric = statistic.empty() ? "stick-fluctuation" : statistic;
-  d.before = d.metric == "friction-residual" ? found.friction_residual : found.stick_fluctuation;
-  d.noise_floor = d.metric == "friction-residual" ? found.friction_floor : found.stick_floor;
-  d.after = d.before;
-}
-
-/// Takes up the likeliest contact effect where it gains clearly; true if there was one. `found` is of the model with `sofar` nats gained.
-bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d) {
-  if (sofar == 0)
-    for (const auto& line : found.warnings) d.warnings.push_back(line);
-  if (std::erase_if(found.hypotheses, [&](const auto& h) { return h.gain > found.threshold && is_hum(h, d); }) > 0) {
-    d.warnings.emplace_back("a ripple at a multiple of the mains' frequency: taken for what is left of the hum");
-    found.as_declared = std::none_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) {
-      return h.decided && h.gain > found.threshold && h.held_out_gain > found.threshold / 2;
-    });
-  }
-  const bool nothing = found.as_declared || found.hypotheses.empty();
-  const double gained = nothing ? 0.0 : std::max(0.0, found.hypotheses.front().evidence(found.independent));
-  if (sofar == 0) {
-    for (auto& r : d.ranking) r.log10_evidence -= gained / std::log(10.0);
-    for (const auto& h : found.hypotheses) {
-      const double nats = h.evidence(found.independent) - gained;
-      d.ranking.push_back({{h.effect}, (nothing ? std::min(-0.5, nats) : nats) / std::log(10.0)});
-    }
-  }
-  if (nothing) return false;
-  const auto& best = found.hypotheses.front();
-  if (!best.decided || best.gain <= found.threshold || best.held_out_gain <= found.threshold / 2) return false;
-  const bool gives = best.statistic == "stick-fluctuation" && best.effect != "speed-ripple";
-  if (best.gain < (gives ? further_give_share : further_tone_share) * sofar) return false;
-  // What explains far more, but with parameters that the strokes leave open, forbids to name the lesser.
-  if (std::any_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return !h.decided && h.gain > 2 * best.gain && h.gain > found.threshold; })) return false;
-  const double second = found.hypotheses.size() > 1 ? found.hypotheses[1].gain : 0;
-  missing_effect m = described(best, 1 - std::exp(-std::min(30.0, best.gain - std::max(0.0, second))));
-  for (std::size_t i = 1; i < found.hypotheses.size(); ++i)
-    if (found.hypotheses[i].gain > best.gain - 5) m.indistinguishable_from.push_back(found.hypotheses[i].effect);
-  d.missing.push_back(m);
-  if (d.missing.size() > 1) return true;
-  judge_by(best.statistic, found, d);
-  d.after = best.fluctuation;
-  return true;
-}
-
-/// What the sticking string moves by beyond noise.
-double stick_excess(const rosin::contact_findings& f) { return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor)); }
-
-/// How far noise alone makes the two versions of a stroke's force part, as a share of the force.
-double parting_by_noise(const diagnosed_stroke& s) {
-  double power = 0, count = 1;
-  for (std::size_t i = s.motion.known.begin; i < s.motion.known.end; ++i) power += s.mean_N[i] * s.mean_N[i], ++count;
-  const double noise_N = std::hypot(s.calibration.noise_N[0] / s.calibration.gain[0], s.calibration.noise_N[1] / s.calibration.gain[1]);
-  return std::sqrt(2.0) * noise_N / std::sqrt(std::max(1e-300, power / count));
-}
-
-/// Whether what no name was found for is as little as noise and imperfect models leave; else what shows it is what d is judged by.
-bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found, rig_diagnosis& d) {
-  constexpr double much = 5, least = 0.06;
-  const auto apart = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.delta > std::max(least, much * parting_by_noise(s)); });
-  const std::string statistic = rosin::beyond_doubt(found);
-  if (apart != strokes.end()) d.metric = "force-consistency", d.take = apart->name, d.before = apart->delta, d.after = d.before, d.noise_floor = parting_by_noise(*apart);
-  else if (!statistic.empty()) judge_by(statistic, found, d);
-  return apart == strokes.end() && statistic.empty();
-}
-
-/// One effect of the contact after the other; true if the contact is as the model then has it. Where one was found in what sticks, that has
-/// to move by at most half of what it did, or by no more than noise makes it; else none is named.
-bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const std::vector<std::string>& without, rig_diagnosis& d) {
-  rosin::contact_model model = declared_contact(rig);
-  model.included.insert(model.included.end(), without.begin(), without.end());
-  const std::size_t others = d.missing.size();
-  double gained = 0, excess = 0;
-  bool sticking = false;
-  rosin::contact_findings found = contact_of(rig, strokes, plain_string, model);
-  excess = stick_excess(found);
-  for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
-    gained += found.hypotheses.front().gain;
-    sticking = sticking || found.hypotheses.front().statistic == "stick-fluctuation";
-    model = rosin::include(std::move(model), found.hypotheses.front());
-    found = contact_of(rig, strokes, plain_string, model);
-    if (d.metric == "stick-fluctuation") d.after = found.stick_fluctuation;
-  }
-  if (d.missing.size() == others) {
-    if (!found.as_declared && others == 0) judge_by(found.hypotheses.front().statistic, found, d);
-    return others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
-  }
-  if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
-  d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
-  if (d.missing.empty()) d.after = d.before;
-  return false;
-}
-
 void rank(rig_diagnosis& d) {
   // Each kind of evidence has its own data; what was found comes first, the rest follows in its order.
   double top = -1e300;
@@ -282,7 +161,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   take_over(p, values, d);
   const auto knows = [&](const char* effect) { return std::find(without.begin(), without.end(), effect) == without.end(); };
   if (p.explained && knows("pluck-position")) name_pluck_position(values, p, d);
-  const bool accounted = !plucks->odd || add_odd(*plucks->odd, knows("rattle") && values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, d);
+  const bool accounted = !plucks->odd || add_odd(*plucks->odd, values, knows("rattle"), d);
   if (p.explained && knows("dropouts")) name_dropouts(rig, p, from, d);
   add_calibration(p, d);
 
@@ -295,14 +174,15 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   step();
   if (!strokes.empty()) {
     const rosin::tension_drift drift = drift_of(strokes, p);
-    if (drifted(drift) && knows("tension-drift")) {
+    const double rise = drifted(drift) && knows("tension-drift") ? drift.relative : 0;
+    if (rise != 0) {
       if (stretched_by_motion(drift, p, values)) d.assumed.push_back("the strokes' tension is " + rosin::detail::figure(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
       else add_drift(drift, d);
-      strokes = reconstruct_strokes(rig, values, p, drift.relative, from, d.warnings);
+      strokes = reconstruct_strokes(rig, values, p, rise, from, d.warnings);
     }
     step();
     add_lost_levels(rig, p, strokes);
-    contact_open = !examine_contact(rig, strokes, plain_string, without, d);
+    contact_open = !examine_contact(rig, strokes, plain_string, rise, without, d);
   }
   rank(d);
   d.verdict = !p.explained || contact_open || !accounted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";

@@ -31,10 +31,10 @@ missing_effect lost(const std::string& take, const std::string& channel, double 
   return m;
 }
 
-missing_effect met(const rosin::rattle& r) {
+missing_effect met(const rosin::rattle& r, const rosin::rig_values& values) {
   missing_effect m;
   m.effect = "rattle", m.position = r.place.position;
-  m.parameters = {{"position", r.place.position, r.place.sd}, {"gap_m", std::abs(r.gap_m), r.gap_sd_m}};
+  m.parameters = {{"position", r.place.position, r.place.sd}, in_si("gap_m", std::abs(r.gap_m), r.gap_sd_m, values, 0)};
   m.statement = statement_of(m);
   return m;
 }
@@ -60,7 +60,7 @@ std::string contradiction(const rosin::odd_pluck& odd) {
 
 }  // namespace
 
-bool add_odd(const rosin::odd_pluck& odd, double impedance_Ns_m, rig_diagnosis& d) {
+bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, bool knows_rattle, rig_diagnosis& d) {
   d.warnings.push_back(contradiction(odd));
   d.take = odd.take.name, d.channel.clear(), d.time_s = odd.time_s, d.band_Hz.reset(), d.position.reset(), d.acts.clear();
   d.before = odd.before, d.after = odd.lost ? odd.after : odd.before, d.noise_floor = odd.floor;
@@ -71,12 +71,12 @@ bool add_odd(const rosin::odd_pluck& odd, double impedance_Ns_m, rig_diagnosis& 
     add_cause(lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s), d);
     return true;
   }
-  const auto rattle = impedance_Ns_m > 0 ? rosin::find_rattle(odd, impedance_Ns_m) : std::nullopt;
+  const auto rattle = knows_rattle && values.impedance_Ns_m ? rosin::find_rattle(odd, values.impedance_Ns_m->value) : std::nullopt;
   if (!rattle) return false;
   d.position = rattle->place.position, d.time_s = {rattle->first_s, rattle->first_s + odd.time_s[1] - odd.time_s[0]};
   d.before = rattle->before, d.after = rattle->after, d.noise_floor = rattle->floor, d.residual_over_noise = rattle->before / rattle->floor;
   d.residual = residuals_of(odd, *rattle);
-  add_cause(met(*rattle), d);
+  add_cause(met(*rattle, values), d);
   return true;
 }
 

@@ -48,6 +48,7 @@ diagnosed_value in_si(const std::string& name, double v, double sd, const rosin:
   }
   if (name == "mass_kg" || name == "resistance_Ns_m") return with(name.c_str(), v, sd, e.impedance);
   if (name == "axial_stiffness_N") return with(name.c_str(), v, sd, e.axial);
+  if (name == "gap_m") return with(name.c_str(), v, sd, std::hypot(e.scale, e.impedance));
   if (name == "quadratic_per_N" || name == "amplitude_N") return with(name.c_str(), v, sd, e.scale);
   return {name, v, sd};
 }

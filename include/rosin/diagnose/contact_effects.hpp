@@ -29,6 +29,13 @@ struct contact_findings {
   bool as_declared = true;
   bool slips_resolved = true;                         ///< slips last long enough in the band for the law's residual to be judged
   std::vector<std::string> warnings;
+
+  /// What an effect has to gain, in nats, so that it counts.
+  [[nodiscard]] double needed(const contact_hypothesis& h) const {
+    return h.effect.find("ripple") != std::string::npos || h.statistic == "friction-residual" ? tone_threshold : threshold;
+  }
+  /// Clearly there, in all takes and in takes predicted from the others.
+  [[nodiscard]] bool stands(const contact_hypothesis& h) const { return h.decided && h.gain > needed(h) && h.held_out_gain > needed(h) / 2; }
 };
 
 /// The statistic that shows several times what noise and imperfect models leave, whether any effect gains or not; empty: none does.
@@ -139,11 +146,7 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(), [](const auto& a, const auto& b) { return a.decided != b.decided ? a.decided : a.gain > b.gain; });
   out.threshold = std::max(40.0, 0.035 * out.independent);
   out.tone_threshold = std::max(30.0, 0.01 * out.independent);
-  for (const auto& h : out.hypotheses) {
-    const bool lean = h.effect.find("ripple") != std::string::npos || h.statistic == "friction-residual";
-    const double needed = lean ? out.tone_threshold : out.threshold;
-    if (h.decided && h.gain > needed && h.held_out_gain > needed / 2) out.as_declared = false;
-  }
+  out.as_declared = std::none_of(out.hypotheses.begin(), out.hypotheses.end(), [&](const auto& h) { return out.stands(h); });
   return out;
 }
 

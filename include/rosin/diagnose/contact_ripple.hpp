@@ -148,9 +148,9 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
   std::vector<tone_rows> takes;
   for (std::size_t t = 0; t < bench.declared().rows.size(); ++t) {
     const auto& rows = bench.declared().rows[t];
-    const double speed = bench.records()[t].take().rod_speed_m_s, nu = detail::student_freedom;
+    const double speed = bench.records()[t].take().rod_speed_m_s;
     takes.push_back({s.residual[t], Eigen::VectorXd::Constant(rows.target.size(), speed),
-                     ((s.residual[t].array().square() / (s.scale * s.scale) + nu).inverse() * (nu + 1)).sqrt().matrix(), rows.sample, bench.records()[t].take().rate_Hz});
+                     detail::student_row_factors(s.residual[t], s.scale), rows.sample, bench.records()[t].take().rate_Hz});
   }
   auto tone = find_tone(takes, below_the_pitch(bench.records()));
   stick_design d = bench.declared();

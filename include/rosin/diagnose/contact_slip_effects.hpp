@@ -14,6 +14,8 @@
 #include <rosin/diagnose/contact_ripple.hpp>
 #include <rosin/diagnose/friction_laws.hpp>
 
+#include <optional>
+
 namespace rosin {
 
 /// Slips of all takes, and the law as declared fitted to them.
@@ -29,8 +31,8 @@ public:
     }
     usable_ = samples > 400 && std::all_of(records_.begin(), records_.end(), [](const auto& r) { return r.slips.sample.size() > 100 && r.normal_N > 0; });
     if (!usable_) return;
+    ripple_Hz_ = sticks.model().normal_ripple_Hz;
     declared_ = fit(sticks.model().law == contact_law::thermal);
-    if (sticks.model().normal_ripple_Hz) include_ripple(*sticks.model().normal_ripple_Hz);
   }
 
   [[nodiscard]] bool usable() const noexcept { return usable_; }
@@ -40,12 +42,15 @@ public:
   [[nodiscard]] double pitch_Hz() const noexcept { return pitch_; }
   /// Of the mean friction coefficient, where sensors lost the force's mean.
   [[nodiscard]] double level_sd() const noexcept { return level_sd_; }
-  /// The thermal law or the curve along the motion. Where the mean force was lost, strokes may be off against the first by a constant.
+  /// The thermal law or the curve along the motion. What a known ripple of the normal force does to the force is taken out with the law itself.
   [[nodiscard]] law_fit fit(bool thermal) const {
-    law_fit law = thermal ? fit_thermal(records_, floor_) : fit_velocity_curve(records_, floor_);
-    if (!(level_sd_ > 0)) return law;
-    detail::free_levels(law.design);
-    law.fit = fit_design(law.design, floor_);
+    law_fit law = fit_to(records_, thermal);
+    if (!ripple_Hz_) return law;
+    std::vector<slip_record> steady = records_;
+    for (int round = 0; round < 2; ++round) {
+      take_out_tone(law, *ripple_Hz_, steady);
+      law = fit_to(steady, thermal);
+    }
     return law;
   }
 
@@ -67,16 +72,33 @@ public:
   }
 
 private:
-  void include_ripple(double f) {
-    stick_design d = declared_.design;
-    add_tone(d, f);
-    declared_.fit = fit_design(d, floor_);
-    declared_.design = std::move(d);
+  /// Where the mean force was lost, strokes may be off against the first by a constant.
+  [[nodiscard]] law_fit fit_to(const std::vector<slip_record>& records, bool thermal) const {
+    law_fit law = thermal ? fit_thermal(records, floor_) : fit_velocity_curve(records, floor_);
+    if (!(level_sd_ > 0)) return law;
+    detail::free_levels(law.design);
+    law.fit = fit_design(law.design, floor_);
+    return law;
+  }
+  /// Divides the force of each take by 1 + the tone that the law leaves in it.
+  static void take_out_tone(const law_fit& law, double f, std::vector<slip_record>& records) {
+    for (std::size_t t = 0; t < records.size(); ++t) {
+      const auto& rows = law.design.rows[t];
+      const auto& left = law.fit.solution.residual[t];
+      const tone_rows take{left, rows.target - left, detail::student_row_factors(left, law.residual()), rows.sample, records[t].rate_Hz};
+      const std::complex<double> relative = detail::sums_at(take, f, 0, rows.sample.size() - static_cast<std::size_t>(rows.shared.cols() - 2)).solve();
+      const auto steady = [&](std::size_t i) {
+        return 1 / (1 + (relative * std::polar(1.0, 2 * std::numbers::pi * f * static_cast<double>(i) / records[t].rate_Hz)).imag());
+      };
+      for (std::size_t i = 0; i < records[t].force_N.size(); ++i) records[t].force_N[i] *= steady(i);
+      for (Eigen::Index k = 0; k < records[t].slips.friction.size(); ++k) records[t].slips.friction[k] *= steady(records[t].slips.sample[static_cast<std::size_t>(k)]);
+    }
   }
 
   std::vector<slip_record> records_;
   double pitch_ = 0, floor_ = 0, level_sd_ = 0;
   bool usable_ = false;
+  std::optional<double> ripple_Hz_;
   law_fit declared_{};
 };
 
@@ -101,8 +123,7 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   std::vector<tone_rows> takes;
   for (std::size_t t = 0; t < bench.records().size(); ++t)
     takes.push_back({s.residual[t], bench.predicted(t),
-                     ((s.residual[t].array().square() / (s.scale * s.scale) + detail::student_freedom).inverse() * (detail::student_freedom + 1)).sqrt().matrix(),
-                     bench.declared().design.rows[t].sample, bench.records()[t].rate_Hz});
+                     detail::student_row_factors(s.residual[t], s.scale), bench.declared().design.rows[t].sample, bench.records()[t].rate_Hz});
   auto tone = find_tone(takes, bench.pitch_Hz());
   stick_design d = bench.declared().design;
   bench.add_tone(d, tone.frequency_Hz);

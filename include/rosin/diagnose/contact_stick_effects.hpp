@@ -30,7 +30,7 @@ public:
     const stacked s = stack(design.rows);
     residual_.resize(s.y.size());
     for (std::size_t t = 0; t < design.rows.size(); ++t) residual_.segment(s.first[t], s.first[t + 1] - s.first[t]) = solution.residual[t];
-    weight_ = ((residual_.array().square() / (scale_ * scale_) + student_freedom).inverse() * (student_freedom + 1)).sqrt().matrix();
+    weight_ = student_row_factors(residual_, scale_);
     first_ = s.first;
     basis_ = weight_.asDiagonal() * s.x;
     inverse_ = (basis_.transpose() * basis_ + 1e-12 * Eigen::MatrixXd::Identity(s.x.cols(), s.x.cols())).inverse();
@@ -199,7 +199,8 @@ struct family_fit {
     h.parameters = {{"frequency_Hz", f0, f0 * std::hypot(sd[1], contact_faults::rod_frequency)},
                     {"q", q, q * std::hypot(sd[2], contact_faults::rod_q)},
                     {"mass_kg", mass, mass * std::hypot(mass * sd[0], contact_faults::rod_mass)}};
-  h.decided = found.size > 0 && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 79;  // inside the range that was searched
+  constexpr double heaviest_kg = 0.3;  // modes of rods have grams (specification sheet, 6.1, item 29)
+  h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 79;  // inside the range that was searched
   return h;
 }
 

@@ -8,6 +8,7 @@
 
 #include <rosin/diagnose/pluck_effect.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rosin {
@@ -58,9 +59,12 @@ inline pluck_effect polarisation_effect(const string_facts&) {
 /// A bead, a winding's end; item 17.
 inline pluck_effect point_mass_effect(const string_facts& f) {
   const double Z = detail::unit_of(f), bond = detail::most_bond_s(f);
-  pluck_effect e{"point-mass", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"mass_kg", 0, 1e-2 * Z, 1e-9 * Z}, {"bond_s", -bond, bond, 1e-9, false, -1, false, true}}, {}, 1,
-                 [Z](pluck_scene& s, const double* v, int) { s.scatterers.push_back({v[0], v[1] / Z, 0, 0, v[2]}); }};
-  for (int i = 1; i < 96; ++i) e.starts.push_back({i / 96.0, 3e-8 * Z, 0});
+  pluck_effect e{"point-mass", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"mass_kg", 0, 1e-2 * Z, 1e-9 * Z}, {"bond_s", -bond, bond, 1e-9, false, -1, false, true}, {"loaded_loss", -1, 2, 1e-3, false, -1, false, true}}, {}, 1,
+                 [Z](pluck_scene& s, const double* v, int) {
+                   s.scatterers.push_back({v[0], v[1] / Z, 0, 0, v[2]});
+                   s.loaded_loss = std::clamp(s.loaded_loss + v[3], -1.0, 2.0);
+                 }};
+  for (int i = 1; i < 96; ++i) e.starts.push_back({i / 96.0, 3e-8 * Z, 0, 0});
   return e;
 }
 
@@ -158,19 +162,23 @@ inline pluck_effect pluck_width_effect(const string_facts& f) {
           [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
 }
 
-/// Mains hum: every take has its own phases; item 11.
+/// Mains hum: every take has its own phases; item 11. The fundamental and what rectifiers and transformers add, as far as it lies below the
+/// string's pitch. Parameters of a take, one multiple after the other: re and im of near, of far.
 inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
-  constexpr int harmonics = 4;
+  std::vector<double> multiples{1};
+  for (const double m : {2.0, 3.0, 4.0, 5.0, 7.0})
+    if (m * mains_Hz < 0.95 * f.fundamental_Hz) multiples.push_back(m);
   pluck_effect e{"mains-hum", -1, false, {{"frequency_Hz", mains_Hz - 0.6, mains_Hz + 0.6, 1e-6, true}}, {{mains_Hz}}, -2, {}};
   for (std::size_t t = 0; t < f.takes; ++t)
-    for (int i = 0; i < 4 * harmonics; ++i) {
+    for (std::size_t i = 0; i < 4 * multiples.size(); ++i) {
       e.parameters.push_back({"amplitude", -100, 100, 1e-5, false, static_cast<int>(t)});
       e.starts[0].push_back(0);
     }
-  e.apply = [](pluck_scene& s, const double* v, int take) {
-    for (int h = 0; h < harmonics; ++h) {
-      const double* a = v + 1 + 4 * (take * harmonics + h);
-      s.hum.push_back({v[0] * (h + 1), {std::complex<double>(a[0], a[1]), std::complex<double>(a[2], a[3])}});
+  e.apply = [multiples](pluck_scene& s, const double* v, int take) {
+    const double* a = v + 1 + 4 * static_cast<std::ptrdiff_t>(multiples.size()) * take;
+    for (const double m : multiples) {
+      s.hum.push_back({v[0] * m, {std::complex<double>(a[0], a[1]), std::complex<double>(a[2], a[3])}});
+      a += 4;
     }
   };
   return e;

@@ -78,6 +78,7 @@ struct hum_phasor {
 struct pluck_scene {
   ringing_string string;
   std::vector<scatterer> scatterers;
+  double loaded_loss = 0;             ///< 0: every mode of the bare string loses by itself; 1: every mode of the string with what sits on it
   std::array<yielding_end, 2> ends;
   double release_duration_s = 0;      ///< F(t) = F0 (1 + cos(pi t / d)) / 2
   double width = 0;                   ///< of the wire's grip, fraction of the length

@@ -14,7 +14,9 @@
 // Loss enters k as in transmission.hpp. What it makes of the impedance is a matter of convention, and a heavy bead tells: with every mode
 // damped by itself, i w w_m / Q, the loss sits half in the tension and half in the mass, T (1 + i / 2Q), but for
 //     sum_m phi_m^2 i w (i / 2Q) (w_m - w)^2 / (w_m^2 - w^2)^2  =  -1 / (2 pi Q Z)   at the load itself (twice that, times Z^2, at an end),
-// and what the ends feel of the damping, which the fit's psi takes up.
+// and what the ends feel of the damping, which the fit's psi takes up. Where the modes that are damped by themselves are those of the loaded
+// string, all that depends on the frequency does so on w (1 - i / 2Q), the load's impedance, too, and the last term is not there. What a string
+// and its bead do lies somewhere between (pluck_scene::loaded_loss).
 //
 #pragma once
 
@@ -58,6 +60,8 @@ public:
     const double f = std::abs(s.imag()) / (2 * std::numbers::pi), real_w = 2 * std::numbers::pi * f;
     q_ -= complex(0, real_w * scene.string.loss.inverse_q(f) / 2 * slowness_ratio(real_w, epsilon));
     modulus_ = complex(1, scene.string.loss.inverse_q(f) / 2);
+    load_s_ = s / (1.0 + scene.loaded_loss * (modulus_ - 1.0));
+    own_loss_ = (1 - scene.loaded_loss) * modulus_.imag() / std::numbers::pi;
     K_ = epsilon * q_ * q_;
     kappa_ = std::sqrt(q_ * q_ + 1 / epsilon);
     epsilon_ = epsilon;
@@ -71,7 +75,7 @@ public:
     const double low = std::min(a, b) * length_, high = (1 - std::max(a, b)) * length_, gap = length_ - low - high;
     const complex decay = (fading(gap) - fading(gap + 2 * low) - fading(gap + 2 * high)) / 2.0;
     const complex m = s_ / modulus_ * stiff_ * (sine_of(low) * sine_of(high) * detail::reciprocal(q_) - sine_ * decay * detail::reciprocal(kappa_));
-    return a == b ? m - own_loss() * sine_ : m;
+    return a == b ? m - own_loss_ * sine_ : m;
   }
   /// sin(qL) times the force on end 0 or 1 for a unit force at a.
   [[nodiscard]] complex end_force(int end, double a) const {
@@ -80,23 +84,23 @@ public:
   }
   /// sin(qL) times the force (in Z) on an end per unit speed of the same end, and of the other end.
   [[nodiscard]] complex own_end() const {
-    return -modulus_ * kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * (kappa_ * kappa_ * kappa_ * cosine_ - q_ * q_ * q_ * sine_) - 2.0 * own_loss() * sine_;
+    return -modulus_ * kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * (kappa_ * kappa_ * kappa_ * cosine_ - q_ * q_ * q_ * sine_) - 2.0 * own_loss_ * sine_;
   }
   [[nodiscard]] complex other_end() const {
     return modulus_ * kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * kappa_ * kappa_ * kappa_;
   }
   [[nodiscard]] complex sine() const { return sine_; }
+  /// The frequency that a load's impedance is to be taken at.
+  [[nodiscard]] complex load_s() const { return load_s_; }
 
 private:
-  /// 1 / (2 pi Q)
-  [[nodiscard]] double own_loss() const { return modulus_.imag() / std::numbers::pi; }
   [[nodiscard]] complex sine_of(double time) const { return detail::sine_cosine(q_ * time).sine; }
   /// The near field at that distance.
   [[nodiscard]] complex fading(double time) const { return kappa_.real() * time > 40 ? complex(0) : std::exp(-kappa_ * time); }
 
   complex s_;
-  double length_, epsilon_ = 0;
-  complex modulus_, q_, K_, kappa_, sine_, cosine_, stiff_;
+  double length_, epsilon_ = 0, own_loss_ = 0;  ///< the last: 1 / (2 pi Q), where the bare string's modes lose
+  complex load_s_, modulus_, q_, K_, kappa_, sine_, cosine_, stiff_;
 };
 
 /// Scatterers and yielding ends together.
@@ -130,7 +134,7 @@ struct moving_ends {
   const auto at = [&](Eigen::Index i) { return scene.scatterers[static_cast<std::size_t>(i)].position; };
   loop_matrix A = loop_matrix::Zero(count + ends.count, count + ends.count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const std::complex<double> Z = strength * scene.scatterers[static_cast<std::size_t>(i)].impedance(s);
+    const std::complex<double> Z = strength * scene.scatterers[static_cast<std::size_t>(i)].impedance(string.load_s());
     for (Eigen::Index j = 0; j < count; ++j) A(i, j) = Z * string.mobility(at(i), at(j));
     A(i, i) += string.sine();
     for (Eigen::Index m = 0; m < ends.count; ++m) A(i, count + m) = Z * string.end_force(ends[m], at(i));
@@ -172,7 +176,7 @@ struct moving_ends {
   Eigen::Matrix<std::complex<double>, 2, Eigen::Dynamic, 0, 2, most_loops> out(2, n);
   for (Eigen::Index i = 0; i < count; ++i) {
     const scatterer& on = scene.scatterers[static_cast<std::size_t>(i)];
-    drive[i] = -on.impedance(s) * string.mobility(on.position, position);
+    drive[i] = -on.impedance(string.load_s()) * string.mobility(on.position, position);
     for (int e = 0; e < 2; ++e) out(e, i) = string.end_force(e, on.position);
   }
   for (Eigen::Index m = 0; m < ends.count; ++m) {

@@ -68,8 +68,9 @@ inline void add_load_starts(const scene_data& data, const std::vector<pluck_effe
   const auto value = load == catalogue.end() ? std::nullopt : declared_values(data);
   if (!value) return;
   pluck_scene probe;
-  const std::array<double, 3> unit{0.5, 1, 0};
-  load->apply(probe, unit.data(), 0);
+  std::vector<double> here = load->starts.front();
+  here[0] = 0.5, here[1] = 1;
+  load->apply(probe, here.data(), 0);
   const double string_mass = 0.5 / data.guess.fundamental_Hz / probe.scatterers.front().mass_s;
   auto problem = data.problem({}, *value, {1000, 1.5, true}, noise);
   problem.set_noise(problem.assess(*value).noise);
@@ -79,7 +80,7 @@ inline void add_load_starts(const scene_data& data, const std::vector<pluck_effe
     double most = 0;
     std::vector<double> best;
     for (int i = 1; i < 48; ++i) {
-      const std::vector<double> here{i / 48.0, share * string_mass, 0};
+      here[0] = i / 48.0, here[1] = share * string_mass;
       if (const double gain = gain_as_it_stands(test(with, here)); gain > most) most = gain, best = here;
     }
     if (most > 0) out.push_back({load->id(), extended(data.layout, *value, *load, best)});

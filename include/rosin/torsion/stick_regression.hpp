@@ -51,6 +51,11 @@ inline constexpr double student_freedom = 4;
   return -0.98082925301172623 - std::log(scale) - 0.5 * (nu + 1) * std::log1p(x * x / (nu * scale * scale));
 }
 
+/// What to multiply rows by so that their squares are weighted as Student's likelihood asks.
+[[nodiscard]] inline Eigen::VectorXd student_row_factors(const Eigen::VectorXd& residual, double scale) {
+  return ((residual.array().square() / (scale * scale) + student_freedom).inverse() * (student_freedom + 1)).sqrt().matrix();
+}
+
 /// Mean number of rows that one independent row is worth, from the autocorrelation over up to `lags` samples.
 [[nodiscard]] inline double rows_per_independent(const std::vector<stick_rows>& takes, const std::vector<Eigen::VectorXd>& residual,
                                                  double scale, std::size_t lags = 32) {

@@ -16,7 +16,7 @@ TEST_CASE("lags, look-ahead and mobility, also in single precision") {
   CHECK(k.look_ahead() == 2);
   CHECK(k.fill_ahead() == 3);
   CHECK(k.mobility_m_Ns() == doctest::Approx(2.75));
-  CHECK(single.mobility_m_Ns() == doctest::Approx(2.75F));
+  CHECK(single.mobility_m_Ns() == doctest::Approx(2.75));
   CHECK(single.echo[0].taps[1] == 0.25F);
   CHECK(single.echo[0].last() == 6);
 }

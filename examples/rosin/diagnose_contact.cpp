@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+//
+// The contact, on strokes that are reconstructed with all that the plucks tell: which effects of it does the declared model not own up to?
+//
+#include "diagnose_parts.hpp"
+
+namespace tool {
+
+namespace {
+
+constexpr int most_contact_effects = 2;
+constexpr double further_tone_share = 0.05;     ///< of what was gained so far: no model of a contact is exact either,
+constexpr double further_give_share = 0.2;      ///< and what one model of its give leaves another one takes up
+constexpr double left_of_sticking = 0.5;        ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
+
+missing_effect described(const rosin::contact_hypothesis& h, double probability) {
+  missing_effect m;
+  m.effect = h.effect;
+  m.probability = std::clamp(probability, 0.0, 1.0);
+  for (const auto& p : h.parameters) m.parameters.push_back({p.name, p.value, p.sd});
+  m.statement = statement_of(m);
+  return m;
+}
+
+/// A ripple at a multiple of a mains hum that was found is what is left of the hum.
+bool is_hum(const rosin::contact_hypothesis& h, const rig_diagnosis& d) {
+  const auto frequency = [](const auto& parameters) {
+    for (const auto& p : parameters)
+      if (p.name == "frequency_Hz") return p.value;
+    return 0.0;
+  };
+  if (h.effect != "speed-ripple" && h.effect != "normal-force-ripple") return false;
+  return std::any_of(d.missing.begin(), d.missing.end(), [&](const missing_effect& m) {
+    const double mains = m.effect == "mains-hum" ? frequency(m.parameters) : 0, ripple = frequency(h.parameters);
+    return mains > 0 && std::abs(ripple - mains * std::round(ripple / mains)) < 2;
+  });
+}
+
+/// Before and floor are those of what the contact is judged by.
+void judge_by(const std::string& statistic, const rosin::contact_findings& found, rig_diagnosis& d) {
+  d.metric = statistic.empty() ? "stick-fluctuation" : statistic;
+  d.before = d.metric == "friction-residual" ? found.friction_residual : found.stick_fluctuation;
+  d.noise_floor = d.metric == "friction-residual" ? found.friction_floor : found.stick_floor;
+  d.after = d.before;
+}
+
+/// Takes up the likeliest contact effect where it gains clearly; true if there was one. `found` is of the model with `sofar` nats gained.
+bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d) {
+  if (sofar == 0)
+    for (const auto& line : found.warnings) d.warnings.push_back(line);
+  if (std::erase_if(found.hypotheses, [&](const auto& h) { return h.gain > found.needed(h) && is_hum(h, d); }) > 0) {
+    d.warnings.emplace_back("a ripple at a multiple of the mains' frequency: taken for what is left of the hum");
+    found.as_declared = std::none_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return found.stands(h); });
+  }
+  const bool nothing = found.as_declared || found.hypotheses.empty();
+  const double gained = nothing ? 0.0 : std::max(0.0, found.hypotheses.front().evidence(found.independent));
+  if (sofar == 0) {
+    for (auto& r : d.ranking) r.log10_evidence -= gained / std::log(10.0);
+    for (const auto& h : found.hypotheses) {
+      const double nats = h.evidence(found.independent) - gained;
+      d.ranking.push_back({{h.effect}, (nothing ? std::min(-0.5, nats) : nats) / std::log(10.0)});
+    }
+  }
+  if (nothing) return false;
+  const auto& best = found.hypotheses.front();
+  if (!found.stands(best)) return false;
+  const bool gives = best.statistic == "stick-fluctuation" && best.effect != "speed-ripple";
+  if (best.gain < (gives ? further_give_share : further_tone_share) * sofar) return false;
+  // What explains far more, but with parameters that the strokes leave open, forbids to name the lesser.
+  if (std::any_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return !h.decided && h.gain > 2 * best.gain && h.gain > found.threshold; })) return false;
+  const double second = found.hypotheses.size() > 1 ? found.hypotheses[1].gain : 0;
+  missing_effect m = described(best, 1 - std::exp(-std::min(30.0, best.gain - std::max(0.0, second))));
+  for (std::size_t i = 1; i < found.hypotheses.size(); ++i)
+    if (found.hypotheses[i].gain > best.gain - 5) m.indistinguishable_from.push_back(found.hypotheses[i].effect);
+  d.missing.push_back(m);
+  if (d.missing.size() > 1) return true;
+  judge_by(best.statistic, found, d);
+  d.after = best.fluctuation;
+  return true;
+}
+
+/// What the sticking string moves by beyond noise.
+double stick_excess(const rosin::contact_findings& f) { return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor)); }
+
+/// How far noise alone makes the two versions of a stroke's force part, as a share of the force.
+double parting_by_noise(const diagnosed_stroke& s) {
+  double power = 0, count = 1;
+  for (std::size_t i = s.motion.known.begin; i < s.motion.known.end; ++i) power += s.mean_N[i] * s.mean_N[i], ++count;
+  const double noise_N = std::hypot(s.calibration.noise_N[0] / s.calibration.gain[0], s.calibration.noise_N[1] / s.calibration.gain[1]);
+  return std::sqrt(2.0) * noise_N / std::sqrt(std::max(1e-300, power / count));
+}
+
+/// Whether what no name was found for is as little as noise and imperfect models leave; else what shows it is what d is judged by.
+bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found, rig_diagnosis& d) {
+  constexpr double much = 5, least = 0.06;
+  const auto apart = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.delta > std::max(least, much * parting_by_noise(s)); });
+  const std::string statistic = rosin::beyond_doubt(found);
+  if (apart != strokes.end()) d.metric = "force-consistency", d.take = apart->name, d.before = apart->delta, d.after = d.before, d.noise_floor = parting_by_noise(*apart);
+  else if (!statistic.empty()) judge_by(statistic, found, d);
+  return apart == strokes.end() && statistic.empty();
+}
+
+using asked_contact = std::function<rosin::contact_findings(const rosin::contact_model&)>;
+
+/// What a model with the effects that were found leaves of the statistic that the mismatch is told by.
+double left_by(const std::string& metric, const rosin::contact_findings& found, double before) {
+  return metric == "stick-fluctuation" ? found.stick_fluctuation : metric == "friction-residual" ? found.friction_residual : before;
+}
+
+/// The first of two once more, with the second in the model: it may have held a part of it.
+void settle_first(const asked_contact& ask, const rosin::contact_model& declared, const rosin::contact_hypothesis& second, missing_effect& first) {
+  const rosin::contact_findings found = ask(rosin::include(declared, second));
+  const auto again = std::find_if(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return h.effect == first.effect; });
+  if (again == found.hypotheses.end() || !found.stands(*again)) return;
+  missing_effect m = described(*again, first.probability);
+  m.indistinguishable_from = first.indistinguishable_from;
+  first = std::move(m);
+}
+
+/// Torsion does not feel the tension. Declared relative to transverse waves as the plucks had them, its speed and impedance are other multiples
+/// of what the strokes have; declared at the strokes' tension, they are not: whichever leaves less while the string sticks.
+void take_up_drift(const asked_contact& ask, double tension_drift, rosin::contact_model& model, rosin::contact_findings& found) {
+  if (tension_drift == 0 || !model.torsion) return;
+  rosin::contact_model other = model;
+  other.torsion->speed_ratio /= std::sqrt(1 + tension_drift);
+  other.torsion->impedance_ratio /= std::sqrt(1 + tension_drift);
+  rosin::contact_findings with = ask(other);
+  if (with.stick_fluctuation < found.stick_fluctuation) model = std::move(other), found = std::move(with);
+}
+
+}  // namespace
+
+bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, double tension_drift, const std::vector<std::string>& without, rig_diagnosis& d) {
+  rosin::contact_model model = declared_contact(rig);
+  model.included.insert(model.included.end(), without.begin(), without.end());
+  const asked_contact ask = [&](const rosin::contact_model& m) { return contact_of(rig, strokes, plain_string, m); };
+  rosin::contact_findings found = ask(model);
+  take_up_drift(ask, tension_drift, model, found);
+  const rosin::contact_model declared = model;
+  const std::size_t others = d.missing.size();
+  double gained = 0;
+  bool sticking = false;
+  const double excess = stick_excess(found);
+  for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
+    const rosin::contact_hypothesis best = found.hypotheses.front();
+    gained += best.gain;
+    sticking = sticking || best.statistic == "stick-fluctuation";
+    if (round > 0) settle_first(ask, declared, best, d.missing[others]);
+    model = rosin::include(std::move(model), best);
+    found = ask(model);
+    if (others == 0) d.after = left_by(d.metric, found, *d.after);
+  }
+  if (d.missing.size() == others) {
+    if (!found.as_declared && others == 0) judge_by(found.hypotheses.front().statistic, found, d);
+    return others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
+  }
+  if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
+  d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
+  if (d.missing.empty()) d.after = d.before;
+  return false;
+}
+
+}  // namespace tool
