@@ -4,13 +4,16 @@
 //
 #include "diagnose_parts.hpp"
 
+#include <map>
+
 namespace tool {
 
 namespace {
 
 constexpr int most_contact_effects = 2;
-constexpr double further_tone_share = 0.05;     ///< of what was gained so far: no model of a contact is exact either,
+constexpr double further_tone_share = 0.05;     ///< of what was gained so far on the same statistic: no model of a contact is exact either,
 constexpr double further_give_share = 0.2;      ///< and what one model of its give leaves another one takes up
+constexpr double further_other_share = 0.005;   ///< of what was gained on another statistic
 constexpr double left_of_sticking = 0.5;        ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
 
 missing_effect described(const rosin::contact_hypothesis& h, double probability) {
@@ -44,9 +47,20 @@ void judge_by(const std::string& statistic, const rosin::contact_findings& found
   d.after = d.before;
 }
 
-/// Takes up the likeliest contact effect where it gains clearly; true if there was one. `found` is of the model with `sofar` nats gained.
-bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d) {
-  if (sofar == 0)
+/// What was gained so far, in nats, by statistic.
+using gains_so_far = std::map<std::string, double>;
+
+/// The least that a further effect has to gain beside them.
+double least_further(const gains_so_far& sofar, const rosin::contact_hypothesis& h) {
+  const bool gives = h.statistic == "stick-fluctuation" && h.effect != "speed-ripple";
+  double least = 0;
+  for (const auto& [statistic, nats] : sofar) least = std::max(least, nats * (statistic != h.statistic ? further_other_share : gives ? further_give_share : further_tone_share));
+  return least;
+}
+
+/// Takes up the likeliest contact effect where it gains clearly; true if there was one. `found` is of the model with `sofar` gained.
+bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_diagnosis& d) {
+  if (sofar.empty())
     for (const auto& line : found.warnings) d.warnings.push_back(line);
   if (std::erase_if(found.hypotheses, [&](const auto& h) { return h.gain > found.needed(h) && is_hum(h, d); }) > 0) {
     d.warnings.emplace_back("a ripple at a multiple of the mains' frequency: taken for what is left of the hum");
@@ -54,7 +68,7 @@ bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d)
   }
   const bool nothing = found.as_declared || found.hypotheses.empty();
   const double gained = nothing ? 0.0 : std::max(0.0, found.hypotheses.front().evidence(found.independent));
-  if (sofar == 0) {
+  if (sofar.empty()) {
     for (auto& r : d.ranking) r.log10_evidence -= gained / std::log(10.0);
     for (const auto& h : found.hypotheses) {
       const double nats = h.evidence(found.independent) - gained;
@@ -64,8 +78,7 @@ bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d)
   if (nothing) return false;
   const auto& best = found.hypotheses.front();
   if (!found.stands(best)) return false;
-  const bool gives = best.statistic == "stick-fluctuation" && best.effect != "speed-ripple";
-  if (best.gain < (gives ? further_give_share : further_tone_share) * sofar) return false;
+  if (best.gain < least_further(sofar, best)) return false;
   // What explains far more, but with parameters that the strokes leave open, forbids to name the lesser.
   if (std::any_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return !h.decided && h.gain > 2 * best.gain && h.gain > found.threshold; })) return false;
   const double second = found.hypotheses.size() > 1 ? found.hypotheses[1].gain : 0;
@@ -81,14 +94,6 @@ bool add_contact(rosin::contact_findings& found, double sofar, rig_diagnosis& d)
 
 /// What the sticking string moves by beyond noise.
 double stick_excess(const rosin::contact_findings& f) { return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor)); }
-
-/// How far noise alone makes the two versions of a stroke's force part, as a share of the force.
-double parting_by_noise(const diagnosed_stroke& s) {
-  double power = 0, count = 1;
-  for (std::size_t i = s.motion.known.begin; i < s.motion.known.end; ++i) power += s.mean_N[i] * s.mean_N[i], ++count;
-  const double noise_N = std::hypot(s.calibration.noise_N[0] / s.calibration.gain[0], s.calibration.noise_N[1] / s.calibration.gain[1]);
-  return std::sqrt(2.0) * noise_N / std::sqrt(std::max(1e-300, power / count));
-}
 
 /// Whether what no name was found for is as little as noise and imperfect models leave; else what shows it is what d is judged by.
 bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found, rig_diagnosis& d) {
@@ -138,13 +143,11 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   take_up_drift(ask, tension_drift, model, found);
   const rosin::contact_model declared = model;
   const std::size_t others = d.missing.size();
-  double gained = 0;
-  bool sticking = false;
+  gains_so_far gained;
   const double excess = stick_excess(found);
   for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
     const rosin::contact_hypothesis best = found.hypotheses.front();
-    gained += best.gain;
-    sticking = sticking || best.statistic == "stick-fluctuation";
+    gained[best.statistic] += best.gain;
     if (round > 0) settle_first(ask, declared, best, d.missing[others]);
     model = rosin::include(std::move(model), best);
     found = ask(model);
@@ -154,7 +157,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     if (!found.as_declared && others == 0) judge_by(found.hypotheses.front().statistic, found, d);
     return others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
   }
-  if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
+  if (gained.count("stick-fluctuation") == 0 || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
   return false;

@@ -59,6 +59,8 @@ void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_dia
 [[nodiscard]] std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks,
                                                                 double tension_drift, provenance& from, std::vector<std::string>& warnings,
                                                                 const std::string& only = {}, std::optional<rosin::band> band = {});
+/// Eq. (12) as noise alone makes it.
+[[nodiscard]] double parting_by_noise(const diagnosed_stroke& s);
 [[nodiscard]] rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks);
 /// The mean force that AC-coupled sensors lost, as far as friction is usually known, put into what the strokes are examined with.
 void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, std::vector<diagnosed_stroke>& strokes);

@@ -8,7 +8,7 @@ namespace tool {
 
 namespace {
 
-constexpr double drift_fault = 3e-4;           ///< beside noise, by what else the two versions part; found on rigs of another simulator
+constexpr double drift_fault = 5e-5;           ///< beside noise, by what else the two versions part; found on rigs of two other simulators
 
 /// A converter that oversamples by four may smear a release over a quarter of its step: a variance of (T/4)^2 / 12 beside the d^2 (1/4 - 2/pi^2)
 /// of the release itself. What that makes of the duration d.
@@ -109,7 +109,7 @@ bool drifted(const rosin::tension_drift& t) {
   return std::abs(t.relative) > 5 * t.sd && t.delta_after < 0.7 * t.delta_before && t.delta_after < 0.9 * t.delta_moved_contact && t.delta_before > 0.004;
 }
 
-void add_drift(const rosin::tension_drift& t, rig_diagnosis& d) {
+void add_drift(const rosin::tension_drift& t, const std::vector<diagnosed_stroke>& strokes, rig_diagnosis& d) {
   missing_effect m;
   m.effect = "tension-drift";
   m.probability = 0.999;
@@ -121,7 +121,9 @@ void add_drift(const rosin::tension_drift& t, rig_diagnosis& d) {
   for (auto& r : d.ranking) r.log10_evidence -= gain;
   d.ranking.insert(d.ranking.begin(), {{"tension-drift"}, 0.0});
   if (d.missing.size() > 1) return;
-  d.metric = "force-consistency", d.before = t.delta_before, d.after = t.delta_after;
+  double parting = 0;
+  for (const auto& s : strokes) parting += std::pow(parting_by_noise(s), 2) / static_cast<double>(strokes.size());
+  d.metric = "force-consistency", d.before = t.delta_before, d.after = t.delta_after, d.noise_floor = std::sqrt(parting);
 }
 
 /// A stroke stretches a string, too: a rise in tension up to twice that of the strongest pluck needs no other cause once E A is found.
@@ -177,7 +179,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     const double rise = drifted(drift) && knows("tension-drift") ? drift.relative : 0;
     if (rise != 0) {
       if (stretched_by_motion(drift, p, values)) d.assumed.push_back("the strokes' tension is " + rosin::detail::figure(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
-      else add_drift(drift, d);
+      else add_drift(drift, strokes, d);
       strokes = reconstruct_strokes(rig, values, p, rise, from, d.warnings);
     }
     step();

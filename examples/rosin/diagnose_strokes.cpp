@@ -109,6 +109,13 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
   }
 }
 
+double parting_by_noise(const diagnosed_stroke& s) {
+  const auto known = Eigen::Map<const Eigen::ArrayXd>(s.mean_N.data(), static_cast<Eigen::Index>(s.mean_N.size()))
+                         .segment(static_cast<Eigen::Index>(s.motion.known.begin), static_cast<Eigen::Index>(s.motion.known.end - s.motion.known.begin));
+  // The versions part by twice what their mean is off; the force's mean does not count.
+  return std::sqrt(2.0) * s.sd.force_noise_N / std::sqrt(std::max(1e-300, (known - known.mean()).square().mean()));
+}
+
 rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks) {
   const double rate = strokes.front().rate_Hz;
   const rosin::band limits{0.30 * rate, 0.45 * rate};

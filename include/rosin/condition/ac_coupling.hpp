@@ -33,4 +33,18 @@ void restore_ac_coupled(std::span<T> signal, double corner_Hz, double rate_Hz) n
   for (T& x : signal) x = static_cast<T>(static_cast<double>(x) - mean);
 }
 
+/// The other way about, in place: x, steady before it begins, through the high-pass.
+template <class T>
+void pass_ac_coupled(std::span<T> signal, double corner_Hz, double rate_Hz) noexcept {
+  if (corner_Hz <= 0 || signal.empty()) return;
+  const double half_step = std::numbers::pi * corner_Hz / rate_Hz;
+  double before = static_cast<double>(signal[0]), y = 0;
+  for (T& s : signal) {
+    const double x = static_cast<double>(s);
+    y = ((1 - half_step) * y + x - before) / (1 + half_step);
+    before = x;
+    s = static_cast<T>(y);
+  }
+}
+
 }  // namespace rosin

@@ -40,7 +40,7 @@ struct contact_findings {
 
 /// The statistic that shows several times what noise and imperfect models leave, whether any effect gains or not; empty: none does.
 [[nodiscard]] inline std::string beyond_doubt(const contact_findings& f) {
-  constexpr double much_sticking = 3, much_slipping = 5;
+  constexpr double much_sticking = 1.8, much_slipping = 5;
   if (f.stick_fluctuation > much_sticking * f.stick_floor) return "stick-fluctuation";
   return f.slips_resolved && f.friction_residual > much_slipping * f.friction_floor ? "friction-residual" : "";
 }
@@ -87,7 +87,7 @@ inline void add_stick_hypotheses(stick_bench& bench, const std::vector<contact_t
   for (const char* effect : {"torsion", "rod-resonance", "elasto-plastic-friction", "creep", "speed-ripple"})
     if (std::find(known.begin(), known.end(), effect) == known.end()) out.hypotheses.push_back(stick_hypothesis(bench, takes, effect));
   out.stick_fluctuation = bench.fit().solution.scale / bench.speed_m_s();
-  out.stick_floor = bench.floor_m_s() / bench.speed_m_s();
+  out.stick_floor = bench.doubt_m_s() / bench.speed_m_s();
   out.independent = bench.independent();
   reconsider_damping(bench, takes, out.hypotheses);
   common_share(out.hypotheses, "stick-fluctuation");

@@ -111,7 +111,7 @@ public:
   stick_bench(const std::vector<contact_take>& takes, const contact_model& model)
       : records_{detail::records_of(stick_takes(takes))}, model_{model} {
     if (records_.empty()) return;
-    for (const auto& t : takes) floor_ = std::max(floor_, doubt(t));
+    for (const auto& t : takes) doubt_ = std::max(doubt_, doubt(t));
     free_ = fit_torsion(stick_takes(takes), model.torsion);
     mark();
     declare();
@@ -121,11 +121,13 @@ public:
   void use_damping(torsion_damping damping) {
     damping_ = damping;
     declared_ = equation(model_.torsion, damping, false);
-    fit_ = fit_design(declared_, floor_);
+    fit_ = fit_design(declared_, floor_m_s());
   }
   [[nodiscard]] torsion_damping damping() const noexcept { return damping_; }
   [[nodiscard]] bool usable() const noexcept { return rows_ > 600; }
-  [[nodiscard]] double floor_m_s() const noexcept { return floor_; }
+  /// How well the velocity of what sticks is known; and the least scale that a fit may see in it.
+  [[nodiscard]] double doubt_m_s() const noexcept { return doubt_; }
+  [[nodiscard]] double floor_m_s() const noexcept { return 0.6 * doubt_; }
   [[nodiscard]] const contact_model& model() const noexcept { return model_; }
   [[nodiscard]] const stick_design& declared() const noexcept { return declared_; }
   [[nodiscard]] const design_fit& fit() const noexcept { return fit_; }
@@ -176,7 +178,7 @@ private:
         if (const double d = t.velocity_near_m_s[i] - t.velocity_far_m_s[i]; std::isfinite(d)) sum += d * d / 4, count += 1;
       square = std::max(square, sum / count);
     }
-    return 0.6 * std::sqrt(square);
+    return std::sqrt(square);
   }
 
   [[nodiscard]] static std::vector<double> slope(stick_record& record, const torsion_values& at, torsion_damping damping, int k) {
@@ -247,7 +249,7 @@ private:
   std::vector<stick_record> records_;
   contact_model model_;
   outcome<torsion_fit_result> free_ = failure{"not fitted"};
-  double floor_ = 0;
+  double doubt_ = 0;
   std::size_t rows_ = 0;
   std::vector<std::vector<char>> marked_;
   std::vector<std::vector<double>> relative_;

@@ -199,7 +199,7 @@ struct family_fit {
     h.parameters = {{"frequency_Hz", f0, f0 * std::hypot(sd[1], contact_faults::rod_frequency)},
                     {"q", q, q * std::hypot(sd[2], contact_faults::rod_q)},
                     {"mass_kg", mass, mass * std::hypot(mass * sd[0], contact_faults::rod_mass)}};
-  constexpr double heaviest_kg = 0.3;  // modes of rods have grams (specification sheet, 6.1, item 29)
+  constexpr double heaviest_kg = 0.15;  // modes of rods have grams (specification sheet, 6.1, item 29)
   h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 79;  // inside the range that was searched
   return h;
 }

@@ -52,17 +52,18 @@ inline void divide_by_sensor(std::vector<double>& x, const sensor_response& sens
 
 /// In place, near and far.
 inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::array<std::vector<double>, 2>& recorded, double rate_Hz, double edge_Hz) {
+  const pluck_scene scene = scene_of(data, fit);
   Eigen::Index at = data.layout.size();
   for (const pluck_effect& e : fit.effects) {
     if ((e.name == "sensor-nonlinearity" || e.name == "clock-drift") && e.undo) {
       std::vector<pluck_take> one(1);
-      one[0].force_N = recorded;
+      one[0].force_N = recorded, one[0].rate_Hz = rate_Hz;
+      one[0].passed_corner_Hz = {scene.sensors[0].corner_Hz, scene.sensors[1].corner_Hz};
       e.undo(one, data.layout, fit.value, fit.value[at]);
       recorded = one[0].force_N;
     }
     at += static_cast<Eigen::Index>(e.parameters.size());
   }
-  const pluck_scene scene = scene_of(data, fit);
   if (!scene.hum.empty()) {  // more harmonics than plucks need to tell, but none near what the string itself does
     const double mains_Hz = scene.hum.front().frequency_Hz;
     const int harmonics = std::clamp(static_cast<int>(0.6 * scene.string.fundamental_Hz / mains_Hz), 1, 12);

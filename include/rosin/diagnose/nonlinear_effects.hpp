@@ -13,18 +13,43 @@
 //
 #pragma once
 
+#include <rosin/condition/ac_coupling.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 
 namespace rosin {
 
-/// output = f + a f^2 in one channel.
+namespace detail {
+
+/// What a channel felt before its high-pass. The lost constant is such that f, where felt = f + a f^2, has no mean in the later half: a string
+/// that rings swings about zero.
+inline void bring_back_level(std::vector<double>& felt, double a, double corner_Hz, double rate_Hz) {
+  restore_ac_coupled(std::span(felt), corner_Hz, rate_Hz);
+  const auto later = felt.begin() + static_cast<std::ptrdiff_t>(felt.size() / 2);
+  for (int round = 0; round < 3; ++round) {
+    double mean = 0;
+    for (auto x = later; x != felt.end(); ++x) mean += (std::sqrt(std::max(0.0, 1 + 4 * a * *x)) - 1) / (2 * a);
+    mean /= static_cast<double>(std::max<std::ptrdiff_t>(1, felt.end() - later));
+    for (double& x : felt) x -= mean;
+  }
+}
+
+}  // namespace detail
+
+/// output = f + a f^2 in one channel. A high-pass comes behind it: a f^2 passes it, too.
 inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel) {
   pluck_effect e{"sensor-nonlinearity", channel, false, {{"quadratic_per_N", -0.6, 0.6, 1e-4, false, -1, true}}, {{0}}, -3, {}};
   e.undo = [channel](std::vector<pluck_take>& takes, const pluck_layout&, const Eigen::VectorXd& v, double a) {
     const auto c = static_cast<std::size_t>(channel);
     const double gain = std::exp(v[pluck_layout::gain_near + channel]);
-    for (pluck_take& take : takes)
-      for (double& x : take.force_N[c]) x = gain * (std::sqrt(std::max(0.0, 1 + 4 * a * x / gain)) - 1) / (2 * a);
+    for (pluck_take& take : takes) {
+      const double corner_Hz = take.passed_corner_Hz[c];
+      std::vector<double> excess = take.force_N[c];
+      for (double& x : excess) x /= gain;
+      if (corner_Hz > 0) detail::bring_back_level(excess, a, corner_Hz, take.rate_Hz);
+      for (double& x : excess) x -= (std::sqrt(std::max(0.0, 1 + 4 * a * x)) - 1) / (2 * a);
+      if (corner_Hz > 0) pass_ac_coupled(std::span(excess), corner_Hz, take.rate_Hz);
+      for (std::size_t i = 0; i < excess.size(); ++i) take.force_N[c][i] -= gain * excess[i];
+    }
   };
   return e;
 }

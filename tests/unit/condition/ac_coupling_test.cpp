@@ -23,6 +23,19 @@ TEST_CASE_TEMPLATE("a step that drooped away comes back, but for its mean", T, f
     CHECK(static_cast<double>(seen[n]) == doctest::Approx(static_cast<double>(was[n]) - mean).epsilon(2e-4));
 }
 
+TEST_CASE("what passes a high-pass comes back, but for its mean") {
+  std::vector<double> was, x;
+  for (int n = 0; n < 5000; ++n) was.push_back(0.2 + std::sin(0.05 * n) + (n > 700 ? 0.5 : 0.0));
+  x = was;
+  rosin::pass_ac_coupled<double>(x, 40, 48e3);
+  CHECK(x[0] == 0);
+  CHECK(std::abs(x[4999] - was[4999]) > 0.1);
+  rosin::restore_ac_coupled<double>(x, 40, 48e3);
+  double mean = 0;
+  for (const double w : was) mean += w / 5000;
+  for (std::size_t n = 0; n < x.size(); n += 61) CHECK(x[n] == doctest::Approx(was[n] - mean).epsilon(1e-9));
+}
+
 TEST_CASE("a DC-coupled signal is left alone") {
   std::vector<double> x{1, 2, 3};
   rosin::restore_ac_coupled<double>(x, 0, 1000);

@@ -62,6 +62,31 @@ TEST_CASE("contact slip effects: where sensors lost the mean force, strokes may 
   CHECK(level.second < lost.second);
 }
 
+TEST_CASE("contact slip effects: heat under a normal force that ripples is told only with the ripple taken out, and the ripple's size with the heat in") {
+  const rosin::contact_heat_parameters<double> heat{.layer_m = 3e-6, .area_per_newton_m2 = 1e-7};
+  const auto strength = rosin::design_yield_curve(rosin::two_exponential_curve<>{}, heat.without_string(), 0.3);
+  REQUIRE(strength);
+  const rosin::thermal_plastic<double> law{*strength, heat};
+  auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
+  slow.normal_Hz = fast.normal_Hz = 118;
+  slow.normal_relative = fast.normal_relative = 0.2;
+  const auto a = contact_rigs::play(law, slow, contact_rigs::rolls, 81), b = contact_rigs::play(law, fast, contact_rigs::rolls, 83);
+  const std::vector<rosin::contact_take> takes{a.take(), b.take()};
+  rosin::stick_bench sticks(takes, contact_rigs::declared());
+  const rosin::slip_bench ignorant(sticks, takes);
+  const auto ripple = rosin::normal_ripple_hypothesis(ignorant), alone = rosin::law_hypothesis(ignorant);
+  const auto model = rosin::include(contact_rigs::declared(), ripple);
+  rosin::stick_bench steady(takes, model);
+  const rosin::slip_bench curve(steady, takes);
+  const auto beside = rosin::law_hypothesis(curve);
+  CHECK(beside.effect == "thermal-friction");
+  CHECK(beside.density > 1.5 * alone.density);
+  CHECK(beside.fluctuation < 0.7 * curve.declared().residual());
+  rosin::stick_bench warm(takes, rosin::include(contact_rigs::declared(), alone));
+  const auto size = rosin::normal_ripple_hypothesis(rosin::slip_bench(warm, takes)).parameters[1].value;
+  CHECK(size == doctest::Approx(0.2).epsilon(0.08));
+}
+
 TEST_CASE("contact slip effects: a velocity curve as declared gains by nothing") {
   const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 61), b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 63);
   const std::vector<rosin::contact_take> takes{a.take(), b.take()};

@@ -28,6 +28,36 @@ TEST_CASE("a curved sensor is straightened exactly") {
   }
 }
 
+TEST_CASE("a curved sensor in front of a high-pass is straightened, what the high-pass took away and all") {
+  const auto e = rosin::sensor_nonlinearity_effect(facts, 0);
+  std::vector<rosin::pluck_take> takes(1);
+  std::vector<double> force(16384, 0.7);  // held, let go, ringing
+  for (std::size_t i = 640; i < force.size(); ++i) {
+    const double t = static_cast<double>(i - 640) / 128e3;
+    force[i] = std::exp(-12 * t) * (0.6 * std::cos(2 * std::numbers::pi * 659 * t) + 0.1 * std::cos(2 * std::numbers::pi * 5310 * t));
+  }
+  std::vector<double> straight = force, curved = force;
+  for (double& y : curved) y += 0.03 * y * y;
+  rosin::pass_ac_coupled(std::span(straight), 2.7, 128e3);
+  rosin::pass_ac_coupled(std::span(curved), 2.7, 128e3);
+  for (double& y : curved) y *= 0.98;
+  takes[0].force_N = {curved, curved};
+  takes[0].rate_Hz = 128e3;
+  const rosin::pluck_layout layout(takes, {});
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
+  v[rosin::pluck_layout::gain_near] = std::log(0.98);
+  const auto left = [&](double corner_Hz) {
+    auto once = takes;
+    once[0].passed_corner_Hz = {corner_Hz, corner_Hz};
+    e.undo(once, layout, v, 0.03);
+    double most = 0;
+    for (std::size_t i = 0; i < force.size(); ++i) most = std::max(most, std::abs(once[0].force_N[0][i] - 0.98 * straight[i]));
+    return most;
+  };
+  CHECK(left(2.7) < 1e-4);
+  CHECK(left(0) > 1e-2);  // as if the sensor had felt what was recorded
+}
+
 TEST_CASE("a string that is not stretched rings as its partials do") {
   const auto force = rosin::stretching_pluck(string, 0.3, 0.01, limits, 200).run(0, 3e-6, 1 / 128e3, 4, 2000).force;
   const auto lines = rosin::pluck_lines(string, 0.3, 0, limits, 200);

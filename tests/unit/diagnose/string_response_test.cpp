@@ -53,6 +53,29 @@ TEST_CASE("where every mode is damped by itself, a load meets what the sum over 
   }
 }
 
+TEST_CASE("where the loaded string's modes lose by themselves, its poles are those without loss, turned by 1 + i / 2Q") {
+  auto lossless = response_scene();
+  lossless.scatterers = {{.position = 0.33, .mass_s = 5e-5}};  // a tenth of the string's
+  const auto pole = [](const rosin::pluck_scene& scene, complex s) {
+    for (int step = 0; step < 30; ++step) {
+      const complex h = 1e-6 * std::abs(s), slope = (rosin::loop_determinant(scene, s + h) - rosin::loop_determinant(scene, s - h)) / (2.0 * h);
+      s -= rosin::loop_determinant(scene, s) / slope;
+    }
+    return s;
+  };
+  auto loaded = lossless, bare = lossless;
+  loaded.string.loss = bare.string.loss = {500, 0, 0};
+  loaded.loaded_loss = 1;
+  double apart = 0;
+  for (const int n : {1, 2, 4, 7, 11}) {
+    const complex free = pole(lossless, {0, 2 * std::numbers::pi * lossless.string.partial_Hz(n)}), turned = free * complex(1, 1.0 / (2 * 500));
+    CHECK(pole(loaded, free).real() / turned.real() == doctest::Approx(1).epsilon(2e-3));
+    CHECK(pole(loaded, free).imag() / turned.imag() == doctest::Approx(1).epsilon(1e-5));
+    apart = std::max(apart, std::abs(pole(bare, free).real() / turned.real() - 1));
+  }
+  CHECK(apart > 0.02);  // as the bare string's modes lose, the loaded string's decay otherwise
+}
+
 TEST_CASE("slowly, the ends share a force by the lever's law") {
   const rosin::string_at string(response_scene(), {0.01, 1});
   CHECK(std::abs(string.end_force(0, 0.3) / string.sine() - 0.7) < 1e-3);
