@@ -61,14 +61,13 @@ inline int free_parameters(const scene_fit& f) {
   return k;
 }
 
-/// Whether there is a mismatch, of more than `tolerated` times the noise's power, of which the best of `fits` leaves more than half (in
-/// amplitude): over all of a record, what is small per period may have turned partials too far for a score test.
-inline bool leaves_much(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits, std::array<double, 2> noise, double tolerated) {
-  if (fits.empty() || !(fits.front().quality.inflation() > tolerated)) return false;
+/// The share of a mismatch's power that the best of `fits` leaves, as far as it looks.
+inline double share_left(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits, std::array<double, 2> noise) {
+  if (fits.empty()) return 1;
   const scene_fit plain = fit_scene(data, before.effects, before.value, {{1000, fits.front().horizon_periods, true}}, noise);
   double expected = 0;
   for (const double n : fits.front().quality.samples) expected += n;
-  return cost_of(fits.front(), noise) - expected > 0.25 * (cost_of(plain, noise) - expected);
+  return (cost_of(fits.front(), noise) - expected) / std::max(1e-9, cost_of(plain, noise) - expected);
 }
 
 /// Adds effects to the declared model one by one, as long as it is worth it.
@@ -103,8 +102,13 @@ private:
       if (std::none_of(now_.effects.begin(), now_.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);
     const bool strong = round == 0 ? now_.horizon_periods < 1e8 || now_.quality.residual_ratio[0] > 0.05 : now_.quality.residual_ratio[0] > 0.1;
     std::vector<scene_fit> fits = one_more_effect(d_.data, now_, catalogue, strong, weigh_);
-    if (!strong && leaves_much(d_.data, now_, fits, weigh_, round == 0 ? 1.5 : 9)) fits = one_more_effect(d_.data, now_, catalogue, true, weigh_);
-    return fits;
+    // Over all of a record, what is small per period may have turned partials too far for a score test: once more from the first periods.
+    const double tolerated = round == 0 ? 1.5 : 9, much = 0.25;
+    if (strong || fits.empty() || !(fits.front().quality.inflation() > tolerated)) return fits;
+    const double left = share_left(d_.data, now_, fits, weigh_);
+    if (!(left > much)) return fits;
+    std::vector<scene_fit> again = one_more_effect(d_.data, now_, catalogue, true, weigh_);
+    return share_left(d_.data, now_, again, weigh_) < left ? again : fits;
   }
   void leave_alone() {
     d_.base = fit_scene(d_.data, {}, now_.value, {{1000, now_.horizon_periods, true}}, weigh_);

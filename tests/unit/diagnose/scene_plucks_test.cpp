@@ -31,15 +31,15 @@ TEST_CASE("parameters of effects stand behind those of the plucks, in their unit
   CHECK(model.first_of(1) == layout.size() + 2);
   CHECK(model.name(layout.size()) == "frequency_Hz");
   CHECK(model.concerns(layout.size(), 0));
-  CHECK(model.concerns(layout.size() + 6, 0));        // the first take's hum
-  CHECK_FALSE(model.concerns(layout.size() + 6, 1));
+  CHECK(model.concerns(layout.size() + 7, 0));        // the first take's hum
+  CHECK_FALSE(model.concerns(layout.size() + 7, 1));
   CHECK(model.is_free(layout.size() + 4));             // the bond of the mass
   CHECK_FALSE(rosin::scene_plucks(layout, {0, 0}, effects, rosin::freedom::no_corrections).is_free(layout.size() + 4));
   const rosin::scene_plucks held(layout, {0, 0}, effects, rosin::freedom::release_only);
   CHECK(held.is_free(layout.at(1, rosin::pluck_layout::release)));
   CHECK_FALSE(held.is_free(0));
   CHECK_FALSE(held.is_free(layout.at(1, rosin::pluck_layout::offset_far)));
-  Eigen::VectorXd v = test::values_of(layout, std::vector<double>(5 + effects[2].parameters.size(), 0.0));
+  Eigen::VectorXd v = test::values_of(layout, std::vector<double>(6 + effects[2].parameters.size(), 0.0));
   v[layout.size()] = std::log(18e3), v[layout.size() + 1] = std::log(9), v[layout.size() + 2] = 0.4, v[layout.size() + 3] = 1.75e-6;
   const auto scene = model.scene(v, 0);
   CHECK(scene.sensors[1].resonance_Hz == doctest::Approx(18e3));

@@ -13,7 +13,7 @@ TEST_CASE("a bead of a ninth of the string's mass is begun with where it is") {
   const auto layout = test::two_plucks(options);
   const std::vector<rosin::pluck_effect> catalogue{rosin::point_mass_effect(facts)};
   const double mass = 0.175 / (2 * 659.69) / 9, place = 0.61;
-  const Eigen::VectorXd truth = test::values_of(layout, {place, mass, 0});
+  const Eigen::VectorXd truth = test::values_of(layout, {place, mass, 0, 0});
   rosin::scene_data data{{}, {.fundamental_Hz = 663}, options, layout};
   for (std::size_t t = 0; t < 2; ++t) data.takes.push_back(test::scene_pluck(layout, catalogue, truth, t, 3e-4, 3 + t));
   rosin::scene_fit declared;
