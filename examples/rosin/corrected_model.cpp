@@ -73,10 +73,10 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
     for (const auto& e : effects)
       for (const auto& q : e.parameters) {
         const auto [v, s] = value_of(calibration, e.id() + " " + q.name);
-        if (q.take < 0 && !std::isfinite(v)) return wrong("calibration has no \"" + e.id() + " " + q.name + "\"");
-        const double physical = q.take < 0 ? v : 0;  // of single takes: nothing that a stroke needs
+        if (q.take < 0 && !q.late && !std::isfinite(v)) return wrong("calibration has no \"" + e.id() + " " + q.name + "\"");
+        const double physical = q.take < 0 && std::isfinite(v) ? v : 0;  // of single takes: nothing that a stroke needs; a correction: 0 if not told
         value[at] = q.logarithmic && physical > 0 ? std::log(physical) : physical;
-        sd[at++] = q.logarithmic && v > 0 ? s / v : s;
+        sd[at++] = !std::isfinite(v) ? 0 : q.logarithmic && v > 0 ? s / v : s;
       }
     rosin::pluck_diagnosis d{{plucks->takes, plucks->guess, plucks->options, layout}, {}, {}, {}, {}, {}, {}, {}, true, true, 0, 0, 0, {}};
     d.declared.layout = layout, d.declared.value = value.head(layout.size());

@@ -39,22 +39,25 @@ bool is_hum(const rosin::contact_hypothesis& h, const rig_diagnosis& d) {
   });
 }
 
+/// The data that a statistic is taken from: what sticks, at one place or at two, or what slips.
+std::string data_of(const std::string& statistic) { return statistic == "friction-residual" ? statistic : "stick-fluctuation"; }
+
 /// Before and floor are those of what the contact is judged by.
 void judge_by(const std::string& statistic, const rosin::contact_findings& found, rig_diagnosis& d) {
-  d.metric = statistic.empty() ? "stick-fluctuation" : statistic;
+  d.metric = data_of(statistic);
   d.before = d.metric == "friction-residual" ? found.friction_residual : found.stick_fluctuation;
   d.noise_floor = d.metric == "friction-residual" ? found.friction_floor : found.stick_floor;
   d.after = d.before;
 }
 
-/// What was gained so far, in nats, by statistic.
+/// What was gained so far, in nats, by the data that it was gained on.
 using gains_so_far = std::map<std::string, double>;
 
 /// The least that a further effect has to gain beside them.
 double least_further(const gains_so_far& sofar, const rosin::contact_hypothesis& h) {
   const bool gives = h.statistic == "stick-fluctuation" && h.effect != "speed-ripple";
   double least = 0;
-  for (const auto& [statistic, nats] : sofar) least = std::max(least, nats * (statistic != h.statistic ? further_other_share : gives ? further_give_share : further_tone_share));
+  for (const auto& [data, nats] : sofar) least = std::max(least, nats * (data != data_of(h.statistic) ? further_other_share : gives ? further_give_share : further_tone_share));
   return least;
 }
 
@@ -81,10 +84,12 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
   if (best.gain < least_further(sofar, best)) return false;
   // What explains far more, but with parameters that the strokes leave open, forbids to name the lesser.
   if (std::any_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return !h.decided && h.gain > 2 * best.gain && h.gain > found.threshold; })) return false;
-  const double second = found.hypotheses.size() > 1 ? found.hypotheses[1].gain : 0;
-  missing_effect m = described(best, 1 - std::exp(-std::min(30.0, best.gain - std::max(0.0, second))));
+  double second = 0;
   for (std::size_t i = 1; i < found.hypotheses.size(); ++i)
-    if (found.hypotheses[i].gain > best.gain - 5) m.indistinguishable_from.push_back(found.hypotheses[i].effect);
+    if (const double g = found.hypotheses[i].gain; g <= best.gain) second = std::max(second, g);
+  missing_effect m = described(best, 1 - std::exp(-std::min(30.0, best.gain - second)));
+  for (std::size_t i = 1; i < found.hypotheses.size(); ++i)
+    if (std::abs(found.hypotheses[i].gain - best.gain) < 5) m.indistinguishable_from.push_back(found.hypotheses[i].effect);
   d.missing.push_back(m);
   if (d.missing.size() > 1) return true;
   judge_by(best.statistic, found, d);
@@ -144,20 +149,24 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   const rosin::contact_model declared = model;
   const std::size_t others = d.missing.size();
   gains_so_far gained;
+  bool sticking = false;
+  std::string first;  // statistic
   const double excess = stick_excess(found);
   for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
     const rosin::contact_hypothesis best = found.hypotheses.front();
-    gained[best.statistic] += best.gain;
+    gained[data_of(best.statistic)] += best.gain;
+    sticking = sticking || best.statistic == "stick-fluctuation";
+    if (round == 0) first = best.statistic;
     if (round > 0) settle_first(ask, declared, best, d.missing[others]);
     model = rosin::include(std::move(model), best);
     found = ask(model);
-    if (others == 0) d.after = left_by(d.metric, found, *d.after);
+    if (others == 0 && first == d.metric) d.after = left_by(first, found, *d.after);
   }
   if (d.missing.size() == others) {
     if (!found.as_declared && others == 0) judge_by(found.hypotheses.front().statistic, found, d);
     return others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
   }
-  if (gained.count("stick-fluctuation") == 0 || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
+  if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
   return false;

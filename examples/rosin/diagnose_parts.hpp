@@ -71,7 +71,7 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
 [[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const rosin::contact_model& model);
 
 /// One effect of the contact after the other, under strokes whose tension is the plucks' times 1 + tension_drift; true if the contact is as the model then has it. Where one was found in what sticks, that has
-/// to move by at most half of what it did, or by no more than noise makes it; else none is named.
+/// to move by at most half of what it did, or by no more than the reconstruction leaves unsure; else none is named.
 bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, double tension_drift, const std::vector<std::string>& without,
                      rig_diagnosis& d);
 

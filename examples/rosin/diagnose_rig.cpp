@@ -8,6 +8,7 @@ namespace tool {
 
 namespace {
 
+constexpr double loaded_drift_fault = 3e-4;    ///< the same of strings with loads or yielding ends, whose noise is not told by the search
 constexpr double drift_fault = 5e-5;           ///< beside noise, by what else the two versions part; found on rigs of two other simulators
 
 /// A converter that oversamples by four may smear a release over a quarter of its step: a variance of (T/4)^2 / 12 beside the d^2 (1/4 - 2/pi^2)
@@ -109,11 +110,11 @@ bool drifted(const rosin::tension_drift& t) {
   return std::abs(t.relative) > 5 * t.sd && t.delta_after < 0.7 * t.delta_before && t.delta_after < 0.9 * t.delta_moved_contact && t.delta_before > 0.004;
 }
 
-void add_drift(const rosin::tension_drift& t, const std::vector<diagnosed_stroke>& strokes, rig_diagnosis& d) {
+void add_drift(const rosin::tension_drift& t, const std::vector<diagnosed_stroke>& strokes, bool plain_string, rig_diagnosis& d) {
   missing_effect m;
   m.effect = "tension-drift";
   m.probability = 0.999;
-  m.parameters = {{"relative", t.relative, std::hypot(t.sd, drift_fault)}};
+  m.parameters = {{"relative", t.relative, std::hypot(t.sd, plain_string ? drift_fault : loaded_drift_fault)}};
   m.statement = "The tension changed by " + rosin::detail::figure(100 * t.relative, "%+.3g") + " % between the plucks and the strokes.";
   d.missing.push_back(m);
   // Of the force's two versions a few hundred samples a take are independent: ln L rises by n ln(before / after).
@@ -179,7 +180,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     const double rise = drifted(drift) && knows("tension-drift") ? drift.relative : 0;
     if (rise != 0) {
       if (stretched_by_motion(drift, p, values)) d.assumed.push_back("the strokes' tension is " + rosin::detail::figure(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
-      else add_drift(drift, strokes, d);
+      else add_drift(drift, strokes, plain_string, d);
       strokes = reconstruct_strokes(rig, values, p, rise, from, d.warnings);
     }
     step();

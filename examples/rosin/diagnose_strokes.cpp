@@ -35,7 +35,7 @@ rosin::bow_motion<double> motion_of(const diagnosed_stroke& s, const rosin::pluc
 }
 
 /// A take and its calibration, without what the sensors did to it.
-diagnosed_stroke recorded_stroke(const rosin::rig& rig, const rosin::take& take, const rosin::take_signals& read, const rosin::calibration& calibration,
+diagnosed_stroke recorded_stroke(const rosin::take& take, const rosin::take_signals& read, const rosin::calibration& calibration,
                                  const rosin::pluck_diagnosis& plucks, const rosin::band& limits) {
   diagnosed_stroke s;
   s.name = take.name, s.rate_Hz = read.sample_rate_Hz;
@@ -43,10 +43,6 @@ diagnosed_stroke recorded_stroke(const rosin::rig& rig, const rosin::take& take,
   s.calibration = calibration;
   s.recorded_N = {read.near_N(), read.far_N()};
   rosin::undo_sensors(plucks.data, plucks.best, s.recorded_N, s.rate_Hz, limits.stop_Hz);
-  for (std::size_t c = 0; c < 2; ++c) {
-    const double corner = rig.channel(c == 0 ? "near" : "far")->ac_coupled_Hz.value_or(0);
-    if (corner > 0) rosin::restore_ac_coupled(std::span(s.recorded_N[c]), corner, s.rate_Hz);
-  }
   s.force_N = rosin::detail::calibrated(s.calibration, s.recorded_N[0], s.recorded_N[1]);
   return s;
 }
@@ -82,7 +78,7 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
     }
     const double rate = read->signals.sample_rate_Hz;
     const rosin::band limits = band.value_or(rosin::band{0.30 * rate, 0.45 * rate});
-    diagnosed_stroke s = recorded_stroke(rig, take, read->signals, rosin::at_tension(calibration_with(plucks, *position, values), tension_drift), plucks, limits);
+    diagnosed_stroke s = recorded_stroke(take, read->signals, rosin::at_tension(calibration_with(plucks, *position, values), tension_drift), plucks, limits);
     s.motion = motion_of(s, scene, limits);
     if (s.motion.known.end <= s.motion.known.begin + 500) {
       warnings.push_back(take.name + ": left out: too short");

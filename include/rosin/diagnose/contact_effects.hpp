@@ -20,7 +20,7 @@
 namespace rosin {
 
 struct contact_findings {
-  std::vector<contact_hypothesis> hypotheses;  ///< best first, those without determined parameters last
+  std::vector<contact_hypothesis> hypotheses;  ///< best first: those that stand, then by gain, those without determined parameters last
   double stick_fluctuation = 0, stick_floor = 0;      ///< of the model as declared, and what the reconstruction leaves uncertain; of the rod's speed
   double friction_residual = 0, friction_floor = 0;   ///< the same of the law, as a coefficient of friction
   double independent = 0;                             ///< independent samples that stick
@@ -143,9 +143,10 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
     if (auto width = width_hypothesis(sticks, takes)) out.hypotheses.push_back(*std::move(width));
   detail::add_stick_hypotheses(sticks, takes, out);
   detail::add_slip_hypotheses(sticks, takes, out);
-  std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(), [](const auto& a, const auto& b) { return a.decided != b.decided ? a.decided : a.gain > b.gain; });
   out.threshold = std::max(40.0, 0.035 * out.independent);
   out.tone_threshold = std::max(30.0, 0.01 * out.independent);
+  std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(), [](const auto& a, const auto& b) { return a.decided != b.decided ? a.decided : a.gain > b.gain; });
+  std::stable_partition(out.hypotheses.begin(), out.hypotheses.end(), [&](const auto& h) { return out.stands(h); });
   out.as_declared = std::none_of(out.hypotheses.begin(), out.hypotheses.end(), [&](const auto& h) { return out.stands(h); });
   return out;
 }

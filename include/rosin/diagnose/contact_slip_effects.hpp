@@ -86,7 +86,8 @@ private:
       const auto& rows = law.design.rows[t];
       const auto& left = law.fit.solution.residual[t];
       const tone_rows take{left, rows.target - left, detail::student_row_factors(left, law.residual()), rows.sample, records[t].rate_Hz};
-      const std::complex<double> relative = detail::sums_at(take, f, 0, rows.sample.size() - static_cast<std::size_t>(rows.shared.cols() - 2)).solve();
+      std::complex<double> relative = detail::sums_at(take, f, 0, rows.sample.size() - static_cast<std::size_t>(rows.shared.cols() - 2)).solve();
+      if (constexpr double most = 0.8; std::abs(relative) > most) relative *= most / std::abs(relative);
       const auto steady = [&](std::size_t i) {
         return 1 / (1 + (relative * std::polar(1.0, 2 * std::numbers::pi * f * static_cast<double>(i) / records[t].rate_Hz)).imag());
       };

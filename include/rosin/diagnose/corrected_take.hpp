@@ -55,7 +55,7 @@ inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::arra
   const pluck_scene scene = scene_of(data, fit);
   Eigen::Index at = data.layout.size();
   for (const pluck_effect& e : fit.effects) {
-    if ((e.name == "sensor-nonlinearity" || e.name == "clock-drift") && e.undo) {
+    if ((e.name == "sensor-nonlinearity" || e.name == "clock-drift") && e.undo && fit.value[at] != 0) {
       std::vector<pluck_take> one(1);
       one[0].force_N = recorded, one[0].rate_Hz = rate_Hz;
       one[0].passed_corner_Hz = {scene.sensors[0].corner_Hz, scene.sensors[1].corner_Hz};

@@ -21,7 +21,7 @@ namespace rosin {
 namespace detail {
 
 /// What a channel felt before its high-pass. The lost constant is such that f, where felt = f + a f^2, has no mean in the later half: a string
-/// that rings swings about zero.
+/// that rings swings about zero. (A bowed one does not: there the curvature is undone about a level that is off by the mean force.)
 inline void bring_back_level(std::vector<double>& felt, double a, double corner_Hz, double rate_Hz) {
   restore_ac_coupled(std::span(felt), corner_Hz, rate_Hz);
   const auto later = felt.begin() + static_cast<std::ptrdiff_t>(felt.size() / 2);

@@ -108,7 +108,7 @@ private:
     const double left = share_left(d_.data, now_, fits, weigh_);
     if (!(left > much)) return fits;
     std::vector<scene_fit> again = one_more_effect(d_.data, now_, catalogue, true, weigh_);
-    return share_left(d_.data, now_, again, weigh_) < left ? again : fits;
+    return !again.empty() && share_left(d_.data, now_, again, weigh_) < left ? again : fits;
   }
   void leave_alone() {
     d_.base = fit_scene(d_.data, {}, now_.value, {{1000, now_.horizon_periods, true}}, weigh_);

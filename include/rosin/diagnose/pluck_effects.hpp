@@ -162,12 +162,12 @@ inline pluck_effect pluck_width_effect(const string_facts& f) {
           [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
 }
 
-/// Mains hum: every take has its own phases; item 11. The fundamental and what rectifiers and transformers add, as far as it lies below the
-/// string's pitch. Parameters of a take, one multiple after the other: re and im of near, of far.
+/// Mains hum: every take has its own phases; item 11. The fundamental and what rectifiers and transformers add, but for what lies near a
+/// partial of the string. Parameters of a take, one multiple after the other: re and im of near, of far.
 inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
   std::vector<double> multiples{1};
   for (const double m : {2.0, 3.0, 4.0, 5.0, 7.0})
-    if (m * mains_Hz < 0.95 * f.fundamental_Hz) multiples.push_back(m);
+    if (const double order = m * mains_Hz / f.fundamental_Hz; std::abs(order - std::max(1.0, std::round(order))) > 0.05) multiples.push_back(m);
   pluck_effect e{"mains-hum", -1, false, {{"frequency_Hz", mains_Hz - 0.6, mains_Hz + 0.6, 1e-6, true}}, {{mains_Hz}}, -2, {}};
   for (std::size_t t = 0; t < f.takes; ++t)
     for (std::size_t i = 0; i < 4 * multiples.size(); ++i) {
