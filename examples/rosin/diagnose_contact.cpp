@@ -110,6 +110,13 @@ bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::conta
   return apart == strokes.end() && statistic.empty();
 }
 
+/// How much the sensors' noise alone moves what sticks, of the rod's speed. A contact of some width makes the two versions part, and they tell nothing of it.
+double sticking_noise(const std::vector<diagnosed_stroke>& strokes) {
+  double sum = 0;
+  for (const auto& s : strokes) sum += std::pow(s.sd.velocity_noise_m_s / s.speed_m_s, 2) / static_cast<double>(strokes.size());
+  return std::sqrt(sum);
+}
+
 using asked_contact = std::function<rosin::contact_findings(const rosin::contact_model&)>;
 
 /// What a model with the effects that were found leaves of the statistic that the mismatch is told by.
@@ -162,6 +169,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     found = ask(model);
     if (others == 0 && first == d.metric) d.after = left_by(first, found, *d.after);
   }
+  if (others == 0 && first == "stick-fluctuation at both places") d.noise_floor = sticking_noise(strokes);
   if (d.missing.size() == others) {
     if (!found.as_declared && others == 0) judge_by(found.hypotheses.front().statistic, found, d);
     return others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
