@@ -42,10 +42,12 @@ bool is_hum(const rosin::contact_hypothesis& h, const rig_diagnosis& d) {
 /// The data that a statistic is taken from: what sticks, at one place or at two, or what slips.
 std::string data_of(const std::string& statistic) { return statistic == "friction-residual" ? statistic : "stick-fluctuation"; }
 
+double left_in(const std::string& data, const rosin::contact_findings& found) { return data == "friction-residual" ? found.friction_residual : found.stick_fluctuation; }
+
 /// Before and floor are those of what the contact is judged by.
 void judge_by(const std::string& statistic, const rosin::contact_findings& found, rig_diagnosis& d) {
   d.metric = data_of(statistic);
-  d.before = d.metric == "friction-residual" ? found.friction_residual : found.stick_fluctuation;
+  d.before = left_in(d.metric, found);
   d.noise_floor = d.metric == "friction-residual" ? found.friction_floor : found.stick_floor;
   d.after = d.before;
 }
@@ -69,7 +71,7 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
     d.warnings.emplace_back("a ripple at a multiple of the mains' frequency: taken for what is left of the hum");
     found.as_declared = std::none_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return found.stands(h); });
   }
-  const bool nothing = found.as_declared || found.hypotheses.empty();
+  const bool nothing = found.as_declared;  // else the first one stands
   const double gained = nothing ? 0.0 : std::max(0.0, found.hypotheses.front().evidence(found.independent));
   if (sofar.empty()) {
     for (auto& r : d.ranking) r.log10_evidence -= gained / std::log(10.0);
@@ -80,7 +82,6 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
   }
   if (nothing) return false;
   const auto& best = found.hypotheses.front();
-  if (!found.stands(best)) return false;
   if (best.gain < least_further(sofar, best)) return false;
   // What explains far more, but with parameters that the strokes leave open, forbids to name the lesser.
   if (std::any_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return !h.decided && h.gain > 2 * best.gain && h.gain > found.threshold; })) return false;
@@ -118,11 +119,6 @@ double sticking_noise(const std::vector<diagnosed_stroke>& strokes) {
 }
 
 using asked_contact = std::function<rosin::contact_findings(const rosin::contact_model&)>;
-
-/// What a model with the effects that were found leaves of the statistic that the mismatch is told by.
-double left_by(const std::string& metric, const rosin::contact_findings& found, double before) {
-  return metric == "stick-fluctuation" ? found.stick_fluctuation : metric == "friction-residual" ? found.friction_residual : before;
-}
 
 /// The first of two once more, with the second in the model: it may have held a part of it.
 void settle_first(const asked_contact& ask, const rosin::contact_model& declared, const rosin::contact_hypothesis& second, missing_effect& first) {
@@ -167,7 +163,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     if (round > 0) settle_first(ask, declared, best, d.missing[others]);
     model = rosin::include(std::move(model), best);
     found = ask(model);
-    if (others == 0 && first == d.metric) d.after = left_by(first, found, *d.after);
+    if (others == 0 && first == d.metric) d.after = left_in(first, found);
   }
   if (others == 0 && first == "stick-fluctuation at both places") d.noise_floor = sticking_noise(strokes);
   if (d.missing.size() == others) {

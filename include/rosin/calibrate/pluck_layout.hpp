@@ -30,7 +30,6 @@ struct pluck_take {
   double strength_N = 1;                       ///< nominal breaking force
   double strength_tolerance = 0.03;            ///< relative, a limit: two standard deviations
   double position = 0.5;                       ///< declared, from the near end
-  std::array<double, 2> passed_corner_Hz{};    ///< high-pass that the channels have passed, for what came before it; 0: none is known
 };
 
 /// What is known beforehand.

@@ -40,7 +40,7 @@ namespace rosin {
 /// The far channel's clock runs faster than the near one's by `relative`, each take begun together.
 inline pluck_effect clock_drift_effect(const string_facts&) {
   pluck_effect e{"clock-drift", -1, false, {{"relative", -1e-3, 1e-3, 1e-7, false, -1, true}}, {{0}}, -3, {}};
-  e.undo = [](std::vector<pluck_take>& takes, const pluck_layout&, const Eigen::VectorXd&, double relative) {
+  e.undo = [](std::vector<pluck_take>& takes, const pluck_scene&, const pluck_layout&, const Eigen::VectorXd&, double relative) {
     for (pluck_take& take : takes) take.force_N[1] = resampled(take.force_N[1], relative);
   };
   return e;

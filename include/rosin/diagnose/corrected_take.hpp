@@ -58,8 +58,7 @@ inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::arra
     if ((e.name == "sensor-nonlinearity" || e.name == "clock-drift") && e.undo && fit.value[at] != 0) {
       std::vector<pluck_take> one(1);
       one[0].force_N = recorded, one[0].rate_Hz = rate_Hz;
-      one[0].passed_corner_Hz = {scene.sensors[0].corner_Hz, scene.sensors[1].corner_Hz};
-      e.undo(one, data.layout, fit.value, fit.value[at]);
+      e.undo(one, scene, data.layout, fit.value, fit.value[at]);
       recorded = one[0].force_N;
     }
     at += static_cast<Eigen::Index>(e.parameters.size());

@@ -151,7 +151,7 @@ inline void free_levels(stick_design& d) {
     r = s.y - s.x * h.ldlt().solve(weighted.transpose() * s.y);
     for (int inner = 0; inner < 3; ++inner) {
       scale = std::max(floor, std::sqrt(weight.dot(r.cwiseAbs2()) / static_cast<double>(n)));
-      weight = ((r.array().square() / (scale * scale) + student_freedom).inverse() * (student_freedom + 1)).matrix();
+      weight = student_weights(r, scale);
     }
   }
   for (const double x : r) density += student_log_density(x, scale);

@@ -92,7 +92,7 @@ public:
       at += 2 * n;
     }
     const auto original = takes;
-    e.undo(takes, layout_, value_, value);
+    e.undo(takes, scene_plucks(layout_, plan_.guess.ac_coupled_Hz, {}).scene(value_, 0), layout_, value_, value);
     at = 0;
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const auto before = static_cast<std::size_t>(std::lround(release_s * takes[t].rate_Hz));

@@ -20,6 +20,9 @@ namespace rosin {
 
 namespace detail {
 
+/// f, where y = f + a f^2.
+[[nodiscard]] inline double straightened(double y, double a) { return (std::sqrt(std::max(0.0, 1 + 4 * a * y)) - 1) / (2 * a); }
+
 /// What a channel felt before its high-pass. The lost constant is such that f, where felt = f + a f^2, has no mean in the later half: a string
 /// that rings swings about zero. (A bowed one does not: there the curvature is undone about a level that is off by the mean force.)
 inline void bring_back_level(std::vector<double>& felt, double a, double corner_Hz, double rate_Hz) {
@@ -27,7 +30,7 @@ inline void bring_back_level(std::vector<double>& felt, double a, double corner_
   const auto later = felt.begin() + static_cast<std::ptrdiff_t>(felt.size() / 2);
   for (int round = 0; round < 3; ++round) {
     double mean = 0;
-    for (auto x = later; x != felt.end(); ++x) mean += (std::sqrt(std::max(0.0, 1 + 4 * a * *x)) - 1) / (2 * a);
+    for (auto x = later; x != felt.end(); ++x) mean += straightened(*x, a);
     mean /= static_cast<double>(std::max<std::ptrdiff_t>(1, felt.end() - later));
     for (double& x : felt) x -= mean;
   }
@@ -38,16 +41,15 @@ inline void bring_back_level(std::vector<double>& felt, double a, double corner_
 /// output = f + a f^2 in one channel. A high-pass comes behind it: a f^2 passes it, too.
 inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel) {
   pluck_effect e{"sensor-nonlinearity", channel, false, {{"quadratic_per_N", -0.6, 0.6, 1e-4, false, -1, true}}, {{0}}, -3, {}};
-  e.undo = [channel](std::vector<pluck_take>& takes, const pluck_layout&, const Eigen::VectorXd& v, double a) {
+  e.undo = [channel](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout&, const Eigen::VectorXd& v, double a) {
     const auto c = static_cast<std::size_t>(channel);
-    const double gain = std::exp(v[pluck_layout::gain_near + channel]);
+    const double gain = std::exp(v[pluck_layout::gain_near + channel]), corner_Hz = scene.sensors[c].corner_Hz;
     for (pluck_take& take : takes) {
-      const double corner_Hz = take.passed_corner_Hz[c];
       std::vector<double> excess = take.force_N[c];
       for (double& x : excess) x /= gain;
       if (corner_Hz > 0) detail::bring_back_level(excess, a, corner_Hz, take.rate_Hz);
-      for (double& x : excess) x -= (std::sqrt(std::max(0.0, 1 + 4 * a * x)) - 1) / (2 * a);
-      if (corner_Hz > 0) pass_ac_coupled(std::span(excess), corner_Hz, take.rate_Hz);
+      for (double& x : excess) x -= detail::straightened(x, a);
+      pass_ac_coupled(std::span(excess), corner_Hz, take.rate_Hz);
       for (std::size_t i = 0; i < excess.size(); ++i) take.force_N[c][i] -= gain * excess[i];
     }
   };
@@ -181,7 +183,7 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
   e.retune = [=](pluck_scene& s, const pluck_layout& layout, const Eigen::VectorXd& v, std::size_t t, double axial_N) {
     s.string = tightened(s.string, raised(layout, v, t, axial_N));
   };
-  e.undo = [=](std::vector<pluck_take>& takes, const pluck_layout& layout, const Eigen::VectorXd& v, double axial_N) {
+  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene&, const pluck_layout& layout, const Eigen::VectorXd& v, double axial_N) {
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate, newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
       const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(released)));  // on the record's own samples: nothing is interpolated
@@ -208,7 +210,7 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
 inline pluck_effect phantom_partials_effect(const string_facts& f, const band& limits, int channel) {
   const double tension = f.impedance_Ns_m * 2 * f.length_m * f.fundamental_Hz;
   pluck_effect e{"phantom-partials", channel, false, {{"sensed_axial_stiffness_N", -3e6, 3e6, 1e-3 * tension, false, -1, true}}, {{0}}, -3, {}};
-  e.undo = [=](std::vector<pluck_take>& takes, const pluck_layout& layout, const Eigen::VectorXd& v, double sensed_N) {
+  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene&, const pluck_layout& layout, const Eigen::VectorXd& v, double sensed_N) {
     const auto c = static_cast<std::size_t>(channel);
     const double gain = std::exp(v[pluck_layout::gain_near + channel]);
     for (std::size_t t = 0; t < takes.size(); ++t) {

@@ -42,9 +42,9 @@ struct pluck_effect {
   std::vector<std::vector<double>> starts; ///< physical values
   int strength = 0;                        ///< index of the parameter that the effect vanishes with; -1: none does
   std::function<void(pluck_scene&, const double* values, int take)> apply;
-  /// What is not linear works on the recordings: takes out of them what the effect (one parameter, from 0 on) has put in, by the
-  /// fit so far.
-  std::function<void(std::vector<pluck_take>&, const pluck_layout&, const Eigen::VectorXd& v, double value)> undo{};
+  /// What is not linear works on the recordings: takes out of them what the effect (one parameter, not 0) has put in, by the
+  /// fit so far and the scene that it makes.
+  std::function<void(std::vector<pluck_take>&, const pluck_scene&, const pluck_layout&, const Eigen::VectorXd& v, double value)> undo{};
   /// With it: the linear string that comes nearest in a take, so that what is taken out stays small.
   std::function<void(pluck_scene&, const pluck_layout&, const Eigen::VectorXd& v, std::size_t take, double value)> retune{};
   /// Nuisances that have to go along when the effect enters the model.

@@ -40,11 +40,9 @@ struct scene_data {
   /// The recordings without what effects that are not linear have put in.
   [[nodiscard]] std::vector<pluck_take> undone(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value) const {
     std::vector<pluck_take> out = takes;
-    const pluck_scene scene = scene_plucks(layout, guess.ac_coupled_Hz, effects).scene(value, 0);
-    for (pluck_take& t : out) t.passed_corner_Hz = {scene.sensors[0].corner_Hz, scene.sensors[1].corner_Hz};
     Eigen::Index at = layout.size();
     for (const pluck_effect& e : effects) {
-      if (e.undo && value[at] != 0) e.undo(out, layout, value, value[at]);
+      if (e.undo && value[at] != 0) e.undo(out, scene_plucks(layout, guess.ac_coupled_Hz, effects).scene(value, 0), layout, value, value[at]);
       at += static_cast<Eigen::Index>(e.parameters.size());
     }
     return out;

@@ -60,10 +60,10 @@ template <class Physics = full_physics>
     fine_tuning last{c};
     double stretch = 1;
     for (int round = 0; round < 10 && std::abs(stretch) > 1e-7; ++round) {  // tuning stretches delays; the stiffness follows from round to round
-      last = fine_tune<Physics>(at_tension(c, relative), t.near_N, t.far_N, limits, rate_Hz, {1e-2, 1e-9, 1e-9});
+      const calibration here = at_tension(c, relative);
+      last = fine_tune<Physics>(here, t.near_N, t.far_N, limits, rate_Hz, {1e-2, 1e-9, 1e-9});
       if (round == 0) out.delta_before += last.delta_before * last.delta_before;
-      const double slower = 1 / std::sqrt(1 + relative);
-      stretch = (last.shift[0] + last.shift[1]) / (slower * (c.at.delay_s[0] + c.at.delay_s[1]));
+      stretch = (last.shift[0] + last.shift[1]) / (here.at.delay_s[0] + here.at.delay_s[1]);
       relative = (1 + relative) / std::pow(1 + stretch, 2) - 1;
       sd = 2 * std::sqrt(last.tuned.covariance(0, 0)) / c.at.delay_s[0];
     }

@@ -51,10 +51,11 @@ inline constexpr double student_freedom = 4;
   return -0.98082925301172623 - std::log(scale) - 0.5 * (nu + 1) * std::log1p(x * x / (nu * scale * scale));
 }
 
-/// What to multiply rows by so that their squares are weighted as Student's likelihood asks.
-[[nodiscard]] inline Eigen::VectorXd student_row_factors(const Eigen::VectorXd& residual, double scale) {
-  return ((residual.array().square() / (scale * scale) + student_freedom).inverse() * (student_freedom + 1)).sqrt().matrix();
+/// What squares are to be weighted by, as Student's likelihood asks; and what to multiply rows by for that.
+[[nodiscard]] inline Eigen::VectorXd student_weights(const Eigen::VectorXd& residual, double scale) {
+  return ((residual.array().square() / (scale * scale) + student_freedom).inverse() * (student_freedom + 1)).matrix();
 }
+[[nodiscard]] inline Eigen::VectorXd student_row_factors(const Eigen::VectorXd& residual, double scale) { return student_weights(residual, scale).cwiseSqrt(); }
 
 /// Mean number of rows that one independent row is worth, from the autocorrelation over up to `lags` samples.
 [[nodiscard]] inline double rows_per_independent(const std::vector<stick_rows>& takes, const std::vector<Eigen::VectorXd>& residual,
@@ -136,8 +137,7 @@ struct stacked {
     residual = s.y - s.x * value;
     const double before = out.scale;
     for (int inner = 0; inner < 3; ++inner) {
-      const double s2 = out.scale * out.scale;
-      weight = ((residual.array().square() / s2 + detail::student_freedom).inverse() * (detail::student_freedom + 1)).matrix();
+      weight = detail::student_weights(residual, out.scale);
       out.scale = std::max(floor, std::sqrt(weight.dot(residual.cwiseAbs2()) / static_cast<double>(n)));
     }
     if (pass > 2 && std::abs(out.scale - before) < 1e-3 * before) break;

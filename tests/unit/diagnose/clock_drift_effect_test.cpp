@@ -36,7 +36,7 @@ TEST_CASE("clock drift: only the far channel is put right, take by take") {
       take.force_N[1][i] = tone(static_cast<double>(i) / (1 + drift), 0.05);  // more samples a second
     }
   }
-  e.undo(takes, {}, {}, drift);
+  e.undo(takes, {}, {}, {}, drift);
   for (const auto& take : takes)
     for (std::size_t i = 50; i < 2950; ++i) CHECK(take.force_N[1][i] == doctest::Approx(take.force_N[0][i]).epsilon(1e-4).scale(0.1));
 }

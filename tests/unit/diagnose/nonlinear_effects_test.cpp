@@ -21,7 +21,7 @@ TEST_CASE("a curved sensor is straightened exactly") {
   const rosin::pluck_layout layout(takes, {});
   Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
   v[rosin::pluck_layout::gain_far] = std::log(1.03);
-  e.undo(takes, layout, v, 0.04);
+  e.undo(takes, {}, layout, v, 0.04);
   for (std::size_t i = 0; i < force.size(); ++i) {
     CHECK(takes[0].force_N[1][i] == doctest::Approx(1.03 * force[i]).epsilon(1e-12));
     CHECK(takes[0].force_N[0][i] == force[i]);
@@ -48,8 +48,9 @@ TEST_CASE("a curved sensor in front of a high-pass is straightened, what the hig
   v[rosin::pluck_layout::gain_near] = std::log(0.98);
   const auto left = [&](double corner_Hz) {
     auto once = takes;
-    once[0].passed_corner_Hz = {corner_Hz, corner_Hz};
-    e.undo(once, layout, v, 0.03);
+    rosin::pluck_scene coupled;
+    coupled.sensors[0].corner_Hz = corner_Hz;
+    e.undo(once, coupled, layout, v, 0.03);
     double most = 0;
     for (std::size_t i = 0; i < force.size(); ++i) most = std::max(most, std::abs(once[0].force_N[0][i] - 0.98 * straight[i]));
     return most;
@@ -96,7 +97,7 @@ TEST_CASE("what stretching puts in is taken out: larger with the square of the p
     const rosin::pluck_layout layout(takes, {});
     Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
     v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002, v[layout.at(0, 1)] = std::log(newtons);
-    e.undo(takes, layout, v, 1e4);
+    e.undo(takes, {}, layout, v, 1e4);
     double power = 0;
     for (std::size_t i = 300; i < 900; ++i) power += std::pow(takes[0].force_N[0][i], 2);
     return std::sqrt(power) / newtons;
@@ -140,7 +141,7 @@ TEST_CASE("what a sensor feels of the tension is taken out, before the release a
   const rosin::pluck_layout layout(takes, {});
   Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
   v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002, v[layout.at(0, 1)] = std::log(0.8);
-  e.undo(takes, layout, v, 5e3);
+  e.undo(takes, {}, layout, v, 5e3);
   const auto& far = takes[0].force_N[1];
   const double tension = facts.impedance_Ns_m * 2 * facts.length_m * facts.fundamental_Hz, held = 0.5 * 0.3 * 0.7 * std::pow(0.8 / tension, 2) * 5e3;
   CHECK(far[10] == doctest::Approx(-held).epsilon(0.02));
