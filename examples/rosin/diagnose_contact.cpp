@@ -44,11 +44,13 @@ std::string data_of(const std::string& statistic) { return statistic == "frictio
 
 double left_in(const std::string& data, const rosin::contact_findings& found) { return data == "friction-residual" ? found.friction_residual : found.stick_fluctuation; }
 
+double floor_in(const std::string& data, const rosin::contact_findings& found) { return data == "friction-residual" ? found.friction_floor : found.stick_floor; }
+
 /// Before and floor are those of what the contact is judged by.
 void judge_by(const std::string& statistic, const rosin::contact_findings& found, rig_diagnosis& d) {
   d.metric = data_of(statistic);
   d.before = left_in(d.metric, found);
-  d.noise_floor = d.metric == "friction-residual" ? found.friction_floor : found.stick_floor;
+  d.noise_floor = floor_in(d.metric, found);
   d.after = d.before;
 }
 
@@ -95,6 +97,7 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
   if (d.missing.size() > 1) return true;
   judge_by(best.statistic, found, d);
   d.after = best.fluctuation;
+  if (best.noise > 0) d.noise_floor = best.noise;
   return true;
 }
 
@@ -109,13 +112,6 @@ bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::conta
   if (apart != strokes.end()) d.metric = "force-consistency", d.take = apart->name, d.before = apart->delta, d.after = d.before, d.noise_floor = parting_by_noise(*apart);
   else if (!statistic.empty()) judge_by(statistic, found, d);
   return apart == strokes.end() && statistic.empty();
-}
-
-/// How much the sensors' noise alone moves what sticks, of the rod's speed. A contact of some width makes the two versions part, and they tell nothing of it.
-double sticking_noise(const std::vector<diagnosed_stroke>& strokes) {
-  double sum = 0;
-  for (const auto& s : strokes) sum += std::pow(s.sd.velocity_noise_m_s / s.speed_m_s, 2) / static_cast<double>(strokes.size());
-  return std::sqrt(sum);
 }
 
 using asked_contact = std::function<rosin::contact_findings(const rosin::contact_model&)>;
@@ -163,9 +159,8 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     if (round > 0) settle_first(ask, declared, best, d.missing[others]);
     model = rosin::include(std::move(model), best);
     found = ask(model);
-    if (others == 0 && first == d.metric) d.after = left_in(first, found);
+    if (others == 0 && first == d.metric) d.after = left_in(first, found), d.noise_floor = floor_in(first, found);
   }
-  if (others == 0 && first == "stick-fluctuation at both places") d.noise_floor = sticking_noise(strokes);
   if (d.missing.size() == others) {
     if (!found.as_declared && others == 0) judge_by(found.hypotheses.front().statistic, found, d);
     return others > 0 || (found.as_declared && is_at_rest(strokes, found, d));

@@ -47,6 +47,9 @@ diagnosed_stroke recorded_stroke(const rosin::take& take, const rosin::take_sign
   return s;
 }
 
+/// Of the calibrated channels.
+std::array<double, 2> noise_of(const rosin::calibration& c) { return {c.noise_N[0] / c.gain[0], c.noise_N[1] / c.gain[1]}; }
+
 /// What follows from the motion: the mean of its two versions, how sure it is, and how they differ.
 void add_means_and_doubts(diagnosed_stroke& s, const rosin::band& limits) {
   for (std::size_t i = 0; i < s.motion.force_near_N.size(); ++i) {
@@ -54,8 +57,7 @@ void add_means_and_doubts(diagnosed_stroke& s, const rosin::band& limits) {
     s.mean_m_s.push_back(s.motion.velocity_m_s(i));
   }
   const auto slopes = rosin::sensitivity<rosin::full_physics>(s.calibration, s.force_N[0], s.force_N[1], limits, s.rate_Hz);
-  const std::array<double, 2> noise{s.calibration.noise_N[0] / s.calibration.gain[0], s.calibration.noise_N[1] / s.calibration.gain[1]};
-  s.sd = rosin::uncertainty<rosin::full_physics>(s.calibration, s.motion, slopes, noise, limits, s.rate_Hz);
+  s.sd = rosin::uncertainty<rosin::full_physics>(s.calibration, s.motion, slopes, noise_of(s.calibration), limits, s.rate_Hz);
   const auto middle = (s.motion.known.begin + s.motion.known.end) / 2;
   s.force_sd_N = s.sd.force_sd_N[middle], s.velocity_sd_m_s = s.sd.velocity_sd_m_s[middle];
   s.delta = rosin::consistency_delta(s.motion.force_near_N, s.motion.force_far_N);
@@ -149,6 +151,7 @@ rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diag
     t.delay_s = s.calibration.at.delay_s, t.stiffness_s2 = s.calibration.at.stiffness_s2;
     t.inverse_q = s.calibration.at.loss.inverse_q(0.5 / (t.delay_s[0] + t.delay_s[1]));
     t.impedance_Ns_m = s.calibration.at.impedance_Ns_m, t.length_m = rig.string.length_m.value_or(0);
+    t.noise_N = noise_of(s.calibration);
     t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.level_sd_N = s.level_sd_N, t.edge_Hz = 0.45 * s.rate_Hz;
     takes.push_back(t);
   }

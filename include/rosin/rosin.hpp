@@ -110,6 +110,7 @@
 #include <rosin/torsion/stick_regression.hpp>
 #include <rosin/torsion/torsion_fit.hpp>
 #include <rosin/torsion/torsion_modes.hpp>
+#include <rosin/torsion/torsion_pair.hpp>
 #include <rosin/torsion/torsion_response.hpp>
 
 #include <rosin/friction/contact_heat.hpp>
@@ -159,7 +160,9 @@
 #include <rosin/simulate/wave_string.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
 
+#include <rosin/diagnose/bristle_yield.hpp>
 #include <rosin/diagnose/clock_drift_effect.hpp>
+#include <rosin/diagnose/contact_bristles.hpp>
 #include <rosin/diagnose/contact_effects.hpp>
 #include <rosin/diagnose/contact_ripple.hpp>
 #include <rosin/diagnose/contact_slip_effects.hpp>
@@ -200,6 +203,7 @@
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/diagnose/scene_lines.hpp>
 #include <rosin/diagnose/scene_plucks.hpp>
+#include <rosin/diagnose/stick_design.hpp>
 #include <rosin/diagnose/string_poles.hpp>
 #include <rosin/diagnose/string_response.hpp>
 #include <rosin/diagnose/strong_starts.hpp>

@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/diagnose/contact_bristles.hpp>
 #include <rosin/diagnose/contact_slip_effects.hpp>
 #include <rosin/diagnose/contact_stick_effects.hpp>
 #include <rosin/diagnose/contact_width.hpp>
@@ -61,7 +62,7 @@ inline void common_share(std::vector<contact_hypothesis>& hypotheses, const std:
 [[nodiscard]] inline contact_hypothesis stick_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes, const std::string& effect) {
   if (effect == "torsion") return torsion_hypothesis(bench);
   if (effect == "rod-resonance") return rod_hypothesis(bench);
-  if (effect == "elasto-plastic-friction") return bristle_hypothesis(bench);
+  if (effect == "elasto-plastic-friction") return bristle_hypothesis(bench, takes);
   if (effect == "creep") return creep_hypothesis(bench, takes);
   return speed_ripple_hypothesis(bench);
 }
@@ -137,6 +138,8 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
     else out.warnings.push_back(t.name + ": left out: too short, or its rod's speed or the string's impedance is unknown");
   }
   if (takes.empty()) return out;
+  for (auto& t : takes)
+    if (model.edge_Hz > 0) t.edge_Hz = std::min(model.edge_Hz, t.edge_Hz > 0 ? t.edge_Hz : model.edge_Hz);
   stick_bench sticks(takes, model);
   const auto& known = model.included;
   if (std::find(known.begin(), known.end(), "finite-contact-width") == known.end())

@@ -9,93 +9,14 @@
 #pragma once
 
 #include <rosin/diagnose/contact_take.hpp>
+#include <rosin/diagnose/stick_design.hpp>
 
 namespace rosin {
 
-/// The equation's rows, ready for more columns.
-struct stick_design {
-  std::vector<stick_rows> rows;
-  std::vector<std::array<double, 2>> bounds;  ///< of the shared coefficients
-
-  void add_shared(std::size_t take, const std::vector<double>& samples) { append(rows[take].shared, rows[take].sample, samples); }
-  void add_own(std::size_t take, const std::vector<double>& samples) { append(rows[take].own, rows[take].sample, samples); }
-  void add_bound(double low, double high) { bounds.push_back({low, high}); }
-
-private:
-  static void append(Eigen::MatrixXd& to, const std::vector<std::size_t>& at, const std::vector<double>& samples) {
-    const Eigen::Index c = to.cols();
-    to.conservativeResize(static_cast<Eigen::Index>(at.size()), c + 1);
-    for (std::size_t i = 0; i < at.size(); ++i) to(static_cast<Eigen::Index>(i), c) = samples[at[i]];
-  }
-};
-
-/// A regression with its likelihoods: of everything, and of each part as predicted from the others.
-struct design_fit {
-  stick_solution solution{};
-  double density = 0, held_out = 0;  ///< sums of log densities over all rows, as if these were independent
-  double share = 1;                  ///< independent rows / rows
-};
-
-namespace detail {
-
-/// Takes cut in halves if there is only one.
-[[nodiscard]] inline std::vector<stick_rows> at_least_two(const std::vector<stick_rows>& rows) {
-  if (rows.size() != 1) return rows;
-  const auto& r = rows.front();
-  const Eigen::Index half = r.target.size() / 2, rest = r.target.size() - half;
-  const auto middle = r.sample.begin() + half;
-  return {{r.target.head(half), r.shared.topRows(half), r.own.topRows(half), {r.sample.begin(), middle}},
-          {r.target.tail(rest), r.shared.bottomRows(rest), r.own.bottomRows(rest), {middle, r.sample.end()}}};
-}
-
-/// Log density of one part under the shared coefficients of the others; its own coefficients and the size of what is left are its own.
-[[nodiscard]] inline double predict_part(const std::vector<stick_rows>& parts, std::size_t which, double floor, const stick_prior& prior) {
-  std::vector<stick_rows> others;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (i != which && parts[i].target.size() > parts[i].own.cols() + parts[i].shared.cols()) others.push_back(parts[i]);
-  stick_rows left = parts[which];
-  if (others.empty() || left.target.size() <= left.own.cols()) return 0;
-  const auto trained = stick_regression(others, floor, prior);
-  left.target -= left.shared * trained.shared;
-  left.shared.resize(left.target.size(), 0);
-  const auto seen = stick_regression({left}, floor);
-  double sum = 0;
-  for (const double r : seen.residual.front()) sum += student_log_density(r, seen.scale);
-  return sum;
-}
-
-}  // namespace detail
-
-/// The regression with coefficients that would leave their bounds held there.
-[[nodiscard]] inline stick_solution bounded_regression(const stick_design& design, double floor, stick_prior& held) {
-  const auto n = static_cast<Eigen::Index>(design.bounds.size());
-  held = {Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
-  stick_solution s = stick_regression(design.rows, floor);
-  for (int pass = 0; pass < 4; ++pass) {
-    bool inside = true;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const auto [low, high] = design.bounds[static_cast<std::size_t>(i)];
-      const double slack = 1e-6 * (1 + std::abs(low) + std::abs(high));
-      if (held.precision[i] > 0 || (s.shared[i] >= low - slack && s.shared[i] <= high + slack)) continue;
-      held.centre[i] = s.shared[i] < low ? low : high;
-      held.precision[i] = 1e14;
-      inside = false;
-    }
-    if (inside) break;
-    s = stick_regression(design.rows, floor, held);
-  }
-  return s;
-}
-
-[[nodiscard]] inline design_fit fit_design(const stick_design& design, double floor) {
-  stick_prior held;
-  design_fit fit{};
-  fit.solution = bounded_regression(design, floor, held);
-  fit.share = fit.solution.effective / std::max(1.0, fit.solution.rows);
-  fit.density = fit.solution.log_likelihood / fit.share;
-  const auto parts = detail::at_least_two(design.rows);
-  for (std::size_t i = 0; i < parts.size(); ++i) fit.held_out += detail::predict_part(parts, i, floor, held);
-  return fit;
+/// What bristles of a micrometre a newton bend by, as a column of the equation: a spring with a delay of its own.
+[[nodiscard]] inline std::complex<double> bristle_bending(double f, double delay_s) {
+  const std::complex<double> s(0, 2 * std::numbers::pi * f);
+  return -1e-6 * s / (1.0 + s * delay_s);
 }
 
 /// Records, the samples that stick, and the equation as declared.
@@ -111,7 +32,8 @@ public:
   stick_bench(const std::vector<contact_take>& takes, const contact_model& model)
       : records_{detail::records_of(stick_takes(takes))}, model_{model} {
     if (records_.empty()) return;
-    for (const auto& t : takes) doubt_ = std::max(doubt_, doubt(t));
+    for (const auto& t : takes) doubt_ = std::max(doubt_, doubt(t)), normal_force_N_.push_back(t.normal_force_N), noise_N_.push_back(t.noise_N);
+    doubt_ = std::hypot(doubt_, bristle_noise_m_s());
     free_ = fit_torsion(stick_takes(takes), model.torsion);
     mark();
     declare();
@@ -163,6 +85,31 @@ public:
     return d;
   }
 
+  /// By what a take's surface moves faster than its bristles bend, at the samples that count (else 1). `bends`: their column in the equation,
+  /// for a micrometre a newton; `compliance`: what they have.
+  [[nodiscard]] std::vector<double> faster(std::size_t take, const bristle_yield& yields, const std::vector<double>& bends, double compliance) {
+    const auto& force = records_[take].force_N();
+    std::vector<double> out(bends.size(), 1.0);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (marked_[take][i]) out[i] = yields.faster(force[i], normal_force_N_[take], -compliance * bends[i]);
+    return out;
+  }
+
+  /// What the sensors' noise is in a column, a take's force through a transfer function, rms: it reaches the force as
+  /// f = F_1 cos(w tau_1) + F_2 cos(w tau_2).
+  template <class Transfer>
+  [[nodiscard]] double noise_through(std::size_t take, const Transfer& transfer) const {
+    constexpr int steps = 400;
+    const stick_take& r = records_[take].take();
+    const smooth_window window = records_[take].window();
+    double power = 0;
+    for (int k = 0; k < steps; ++k) {
+      const double f = window.edge_Hz * (k + 0.5) / steps, through = std::norm(window(f) * std::complex<double>(transfer(f)));
+      for (std::size_t side = 0; side < 2; ++side) power += through * std::pow(noise_N_[take][side] * std::cos(2 * std::numbers::pi * f * r.delay_s[side]), 2);
+    }
+    return std::sqrt(power * 2 * window.edge_Hz / (r.rate_Hz * steps));
+  }
+
   /// Gains of an equation over the declared one; the same independence is granted to both.
   [[nodiscard]] std::array<double, 2> gains(const design_fit& with) const noexcept {
     return {with.share * (with.density - fit_.density), with.share * (with.held_out - fit_.held_out)};
@@ -179,6 +126,14 @@ private:
       square = std::max(square, sum / count);
     }
     return std::sqrt(square);
+  }
+
+  /// What the force's noise bends the model's bristles by, if it has any.
+  [[nodiscard]] double bristle_noise_m_s() const {
+    double most = 0;
+    for (std::size_t t = 0; model_.bristle_stiffness_N_m && t < records_.size(); ++t)
+      most = std::max(most, noise_through(t, [&](double f) { return bristle_bending(f, model_.bristle_delay_s.value_or(0)) * (1e6 / *model_.bristle_stiffness_N_m); }));
+    return most;
   }
 
   [[nodiscard]] static std::vector<double> slope(stick_record& record, const torsion_values& at, torsion_damping damping, int k) {
@@ -232,8 +187,12 @@ private:
     }
     if (model_.bristle_stiffness_N_m) {
       const double delay = model_.bristle_delay_s.value_or(0);
-      for (std::size_t t = 0; t < records_.size(); ++t)
-        d.add_shared(t, records_[t].force_through([=](double f) { const std::complex<double> s(0, 2 * std::numbers::pi * f); return -1e-6 * s / (1.0 + s * delay); }));
+      for (std::size_t t = 0; t < records_.size(); ++t) {
+        auto bends = records_[t].force_through([=](double f) { return bristle_bending(f, delay); });
+        const auto scaling = faster(t, model_.yields, bends, 1e6 / *model_.bristle_stiffness_N_m);
+        std::transform(bends.begin(), bends.end(), scaling.begin(), bends.begin(), std::multiplies<>());
+        d.add_shared(t, bends);
+      }
       d.add_bound(0, 1e9);
     }
     if (model_.speed_ripple_Hz)
@@ -247,6 +206,8 @@ private:
   }
 
   std::vector<stick_record> records_;
+  std::vector<double> normal_force_N_;
+  std::vector<std::array<double, 2>> noise_N_;
   contact_model model_;
   outcome<torsion_fit_result> free_ = failure{"not fitted"};
   double doubt_ = 0;

@@ -6,7 +6,6 @@
 //
 //     torsion                  eps = -(h_T - h_declared) * f
 //     rod-resonance            eps = -Y * f,    Y = (s / m) / (s^2 + s w0 / q + w0^2): fixed in frequency whatever the string does
-//     elasto-plastic-friction  eps = -(s / (s0 (1 + s d))) f: before they give way, the bristles' spring s0 and damping s0 d
 //     creep                    eps = -sgn(f) v0 exp((|f| / N - mu) / a)
 //     speed-ripple             eps = v relative sin(2 pi frequency t + phase), whatever the force
 //
@@ -26,15 +25,21 @@ namespace detail {
 /// How much of the residual of a design further columns would explain, in units of its variance.
 class explained {
 public:
-  explicit explained(const stick_design& design, const stick_solution& solution) : design_{&design}, scale_{solution.scale} {
+  explicit explained(const stick_design& design, const stick_solution& solution) : explained(design, solution.residual, solution.scale) {}
+
+  /// With the weights that another fit of the same rows leaves them. Coefficients are held about zero as loosely as their bounds are wide.
+  explained(const stick_design& design, const std::vector<Eigen::VectorXd>& residual, double scale) : design_{&design}, scale_{scale} {
     const stacked s = stack(design.rows);
-    residual_.resize(s.y.size());
-    for (std::size_t t = 0; t < design.rows.size(); ++t) residual_.segment(s.first[t], s.first[t + 1] - s.first[t]) = solution.residual[t];
-    weight_ = student_row_factors(residual_, scale_);
+    Eigen::VectorXd left(s.y.size());
+    for (std::size_t t = 0; t < design.rows.size(); ++t) left.segment(s.first[t], s.first[t + 1] - s.first[t]) = residual[t];
+    weight_ = student_row_factors(left, scale_);
     first_ = s.first;
     basis_ = weight_.asDiagonal() * s.x;
-    inverse_ = (basis_.transpose() * basis_ + 1e-12 * Eigen::MatrixXd::Identity(s.x.cols(), s.x.cols())).inverse();
-    residual_ = weight_.cwiseProduct(residual_);
+    Eigen::VectorXd hold = Eigen::VectorXd::Constant(s.x.cols(), 1e-12);
+    for (std::size_t i = 0; i < design.bounds.size(); ++i) hold[static_cast<Eigen::Index>(i)] += std::pow(2 * scale_ / std::max(1e-9, design.bounds[i][1] - design.bounds[i][0]), 2);
+    inverse_ = (Eigen::MatrixXd(basis_.transpose() * basis_) + Eigen::MatrixXd(hold.asDiagonal())).inverse();
+    residual_ = weight_.cwiseProduct(s.y);
+    residual_ -= basis_ * (inverse_ * (basis_.transpose() * residual_));
   }
 
   /// One column, given for all samples of each take; `size` is its coefficient.
@@ -96,26 +101,23 @@ struct family_fit {
 };
 
 /// Gauss-Newton on a family of transfer functions added to the declared equation; theta stays between `low` and `high`.
-/// `other_compliance`: the terms C1, C3 are not free, C1 is this (in micrometres a newton) and C3 zero. `share`: how much of the column
-/// each take has (empty: all of it).
 [[nodiscard]] inline family_fit fit_family(stick_bench& bench, const transfer_family& family, Eigen::VectorXd theta, double size, const Eigen::VectorXd& low,
-                                           const Eigen::VectorXd& high, int steps, std::optional<double> other_compliance = {}, const std::vector<double>& share = {}) {
+                                           const Eigen::VectorXd& high, int steps) {
   family_fit out{.theta = theta, .size = size, .covariance = {}};
+  Eigen::VectorXd reach = Eigen::VectorXd::Constant(theta.size(), 0.3), last = Eigen::VectorXd::Zero(theta.size());
   for (int step = 0; step <= steps; ++step) {
     stick_design d = bench.declared();
     for (std::size_t t = 0; t < d.rows.size(); ++t) {
       auto& record = bench.records()[t];
-      const double own = share.empty() ? 1.0 : share[t];
-      d.add_shared(t, record.force_through([&](double f) { return own * family(out.theta, f); }));
+      d.add_shared(t, record.force_through([&](double f) { return family(out.theta, f); }));
       for (Eigen::Index k = 0; k < theta.size(); ++k) {
         Eigen::VectorXd up = out.theta, down = out.theta;
         up[k] += 2e-3, down[k] -= 2e-3;
-        d.add_shared(t, record.force_through([&](double f) { return own * out.size / 4e-3 * (family(up, f) - family(down, f)); }));
+        d.add_shared(t, record.force_through([&](double f) { return out.size / 4e-3 * (family(up, f) - family(down, f)); }));
       }
     }
-    if (other_compliance) d.bounds[0] = {*other_compliance, *other_compliance}, d.bounds[1] = {0, 0};
     d.add_bound(0, 1e30);
-    for (Eigen::Index k = 0; k < theta.size(); ++k) d.add_bound(-0.3, 0.3);
+    for (Eigen::Index k = 0; k < theta.size(); ++k) d.add_bound(-reach[k], reach[k]);
     const Eigen::Index first = d.rows.front().shared.cols() - theta.size() - 1;
     stick_prior held;
     if (step == steps) out.fit = fit_design(d, bench.floor_m_s());
@@ -123,7 +125,11 @@ struct family_fit {
     out.size = out.fit.solution.shared[first];
     out.covariance = out.fit.solution.covariance.bottomRightCorner(theta.size() + 1, theta.size() + 1);
     if (step == steps || !(out.size > 0)) break;
-    out.theta = (out.theta + out.fit.solution.shared.tail(theta.size())).cwiseMax(low).cwiseMin(high);
+    const Eigen::VectorXd move = out.fit.solution.shared.tail(theta.size());
+    for (Eigen::Index k = 0; k < theta.size(); ++k)
+      if (move[k] * last[k] < 0) reach[k] *= 0.4;  // to and fro
+    out.theta = (out.theta + move).cwiseMax(low).cwiseMin(high);
+    last = move;
   }
   if (!(out.fit.density != 0)) out.fit = bench.fit();
   return out;
@@ -173,7 +179,7 @@ struct family_fit {
   h.free_parameters = 3;
   const detail::explained quick(bench.declared(), bench.fit().solution);
   std::vector<std::vector<double>> force, column(bench.records().size());
-  for (auto& r : bench.records()) force.push_back(r.force_through([](double) { return 1.0; }));
+  for (auto& r : bench.records()) force.push_back(r.force_N());
   const double rate = bench.records().front().take().rate_Hz;
   double best = 0, f_best = 1000, q_best = 10;
   const auto attempt = [&](double f0, double q) {
@@ -204,47 +210,6 @@ struct family_fit {
   return h;
 }
 
-/// The contact yields elastically before it slides: a compliance, with a delay of its own. `softer`: each take's compliance against the
-/// stated one, where stiffness goes with the normal force (empty: all alike).
-[[nodiscard]] inline contact_hypothesis bristle_hypothesis(stick_bench& bench, const std::vector<double>& softer = {}) {
-  contact_hypothesis h{.effect = "elasto-plastic-friction"};
-  h.free_parameters = 2;
-  const detail::transfer_family family = [](const Eigen::VectorXd& theta, double f) {
-    const std::complex<double> s(0, 2 * std::numbers::pi * f);
-    return -1e-6 * s / (1.0 + s * std::exp(theta[0]));
-  };
-  constexpr double other = 0.7;  // micrometres a newton, less: what contacts are known to yield besides, and how sure that is
-  // What bristles yield is to first order what the declared equation's own compliance terms are: the search goes without these.
-  stick_design bare = bench.declared();
-  for (auto& rows : bare.rows) {
-    rows.target += other * rows.shared.col(0);
-    rows.shared.leftCols(2).setZero();
-  }
-  stick_prior held;
-  const detail::explained quick(bare, bounded_regression(bare, bench.floor_m_s(), held));
-  double best = 0, delay_best = 1e-6, size_best = 1;
-  for (double delay = 1.25e-7; delay < 5e-5; delay *= 2) {
-    std::vector<std::vector<double>> column;
-    for (auto& r : bench.records()) {
-      const double own = softer.empty() ? 1.0 : softer[column.size()];
-      column.push_back(r.force_through([&](double f) { return own * family(Eigen::VectorXd::Constant(1, std::log(delay)), f); }));
-    }
-    double size = 0;
-    const double gain = quick.by(column, size);
-    if (size > 0 && gain > best) best = gain, delay_best = delay, size_best = size;
-  }
-  if (!(best > 0)) return detail::nothing(bench, h);
-  const auto found = detail::fit_family(bench, family, Eigen::VectorXd::Constant(1, std::log(delay_best)), size_best,
-                                       Eigen::VectorXd::Constant(1, std::log(3e-8)), Eigen::VectorXd::Constant(1, std::log(1e-4)), 5, -other, softer);
-  detail::settle_hypothesis(bench, found.fit, h);
-  const double stiffness = found.size > 0 ? 1e6 / found.size : 1e12, delay = std::exp(found.theta[0]);
-  const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-  const double doubt = sd.size() == 2 ? std::hypot(sd[0], other) : 1e3;
-  h.parameters = {{"bristle_stiffness_N_m", stiffness, stiffness * std::hypot(stiffness * 1e-6 * doubt, contact_faults::bristles)}, {"bristle_delay_s", delay, sd.size() == 2 && sd[1] > 1e-6 ? delay * sd[1] : delay}};
-  h.decided = found.size > 3 * doubt;
-  return h;
-}
-
 /// It creeps while it sticks, the more the nearer to the limit of friction.
 [[nodiscard]] inline contact_hypothesis creep_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes) {
   contact_hypothesis h{.effect = "creep"};
@@ -255,7 +220,7 @@ struct family_fit {
     std::vector<std::vector<double>> out;
     for (std::size_t t = 0; t < bench.records().size(); ++t) {
       auto& record = bench.records()[t];
-      const auto force = record.force_through([](double) { return 1.0; });
+      const auto& force = record.force_N();
       std::vector<double> c(force.size());
       for (std::size_t i = 0; i < c.size(); ++i) c[i] = -std::copysign(std::exp(std::min(4.0, (std::abs(force[i]) / takes[t].normal_force_N - 1) / a)), force[i]);
       out.push_back(std::move(c));

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include <rosin/diagnose/bristle_yield.hpp>
 #include <rosin/torsion/torsion_fit.hpp>
 
 namespace rosin {
@@ -31,6 +32,7 @@ struct contact_take {
   double stiffness_s2 = 0, inverse_q = 0;                               ///< of the transverse waves, for a contact of some width
   double impedance_Ns_m = 0, length_m = 0;                              ///< length 0: unknown
   double force_sd_N = 0, velocity_sd_m_s = 0;                           ///< random, of one sample
+  std::array<double, 2> noise_N{};                                      ///< of one sample of near_N, far_N
   double level_sd_N = 0;                                                ///< of the force's mean, where AC-coupled sensors lost it; 0: known
   double edge_Hz = 0;                                                   ///< where the reconstruction's band ends; 0: 0.45 of the rate
   double start_s = 0.03;                                                ///< until the stroke is steady
@@ -46,13 +48,15 @@ struct contact_model {
   std::vector<std::string> included{};                   ///< effects found before and kept
   std::optional<std::array<double, 3>> rod{};            ///< frequency (Hz), q, mass (kg) of a rod that resonates
   std::optional<double> bristle_stiffness_N_m{}, bristle_delay_s{};
+  bristle_yield yields{};
   std::optional<double> speed_ripple_Hz{}, normal_ripple_Hz{};
+  double edge_Hz = 0;                                    ///< beyond it noise takes over what is included; 0: nowhere
 };
 
 /// By how much the contact's parameters come out wrong beside what noise does, as a share of each: what band, gains and torsion leave in a
 /// reconstruction. Found on strokes of another simulator (rosin challenge), where noise alone would have given a tenth of it.
 namespace contact_faults {
-inline constexpr double rod_frequency = 6e-4, rod_q = 0.012, rod_mass = 0.013, ripple = 0.009, bristles = 0.055;
+inline constexpr double rod_frequency = 6e-4, rod_q = 0.012, rod_mass = 0.013, ripple = 0.009, bristles = 0.035;
 }
 
 struct contact_parameter {
@@ -69,6 +73,8 @@ struct contact_hypothesis {
   int free_parameters = 0;
   double density = 0, held_out_density = 0, share = 1; ///< sums of log densities over the declared model's, and independent rows / rows
   double fluctuation = 0;                      ///< what is left of the statistic: relative to the rod's speed, or to the force
+  double noise = 0;                            ///< what the sensors' noise alone leaves of it, where that differs from the findings' floor; else 0
+  double edge_Hz = 0;                          ///< band that its parameters are from, where that is narrower than the takes'; else 0
   std::string statistic{};                     ///< "stick-fluctuation" or "friction-residual"
   bool decided = true;                         ///< the parameters are determined
 
@@ -84,9 +90,14 @@ struct contact_hypothesis {
     return 0;
   };
   model.included.push_back(found.effect);
+  if (found.edge_Hz > 0) model.edge_Hz = found.edge_Hz;
   if (found.effect == "torsion") model.torsion = torsion_values{value("speed_ratio"), value("impedance_ratio"), value("q")};
   if (found.effect == "rod-resonance") model.rod = {value("frequency_Hz"), value("q"), value("mass_kg")};
-  if (found.effect == "elasto-plastic-friction") model.bristle_stiffness_N_m = value("bristle_stiffness_N_m"), model.bristle_delay_s = value("bristle_delay_s");
+  if (found.effect == "elasto-plastic-friction") {
+    model.bristle_stiffness_N_m = value("bristle_stiffness_N_m"), model.bristle_delay_s = value("bristle_delay_s");
+    model.yields.limit = value("friction_limit"), model.yields.weakening_s_m = value("weakening_s_m");
+    if (value("elastic_share") > 0) model.yields.elastic = value("elastic_share");
+  }
   if (found.effect == "speed-ripple") model.speed_ripple_Hz = value("frequency_Hz");
   if (found.effect == "normal-force-ripple") model.normal_ripple_Hz = value("frequency_Hz");
   if (found.effect == "thermal-friction") model.law = contact_law::thermal;

@@ -7,13 +7,15 @@
 //
 //     v_a = F_1 sinh(g a) / Z_w,   v_b = F_2 sinh(g b) / Z_w,   f_a +- f_b = F_1 cosh(g a) +- F_2 cosh(g b) + Z_w (v_a +- v_b) tanh(g d)^(+-1)
 //
-// with a = tau_1 - d, b = tau_2 - d, d = w / (2 c). While they stick, both move with the rod, torsion included. The width
-// is the one that makes that so at both places; w = 0, the declared contact, is what it is measured against.
+// with a = tau_1 - d, b = tau_2 - d, d = w / (2 c). While they stick, both move with the rod, torsion included (torsion_pair.hpp). The width
+// is the one that makes that so at both places, with torsion free as far as it may be off; w = 0, the declared contact, is what it
+// is measured against.
 //
 #pragma once
 
 #include <rosin/diagnose/contact_stick.hpp>
 #include <rosin/propagate/dispersion.hpp>
+#include <rosin/torsion/torsion_pair.hpp>
 
 namespace rosin {
 
@@ -31,7 +33,8 @@ public:
   wide_record(const contact_take& take, const stick_record& record)
       : take_{take}, near_{record.known(take.near_N), take.rate_Hz}, far_{record.known(take.far_N), take.rate_Hz} {}
 
-  [[nodiscard]] wide_motion at(double half_delay_s, const smooth_window& window, const torsion_waveguide& torsion) {
+  [[nodiscard]] wide_motion at(double half_delay_s, const smooth_window& window, const torsion_values& values, torsion_damping damping = torsion_damping::constant_q) {
+    const torsion_pair torsion = rolling(half_delay_s, values, damping);
     wide_motion m;
     std::array<std::vector<double>*, 4> to{&m.near_m_s, &m.far_m_s, &m.compliance[0], &m.compliance[1]};
     std::vector<std::array<complex, 8>> table;
@@ -47,34 +50,49 @@ public:
     return m;
   }
 
+  /// What the sensors' noise makes either place seem to move by, rms of both.
+  [[nodiscard]] double noise_m_s(double half_delay_s, const smooth_window& window, const torsion_values& values, torsion_damping damping) const {
+    const torsion_pair torsion = rolling(half_delay_s, values, damping);
+    double power = 0;
+    constexpr int steps = 400;
+    for (int k = 0; k < steps; ++k) {
+      const double f = window.edge_Hz * (k + 0.5) / steps;
+      const auto row = passage(f, half_delay_s, torsion);
+      for (const std::size_t column : {0U, 1U}) power += 0.5 * std::pow(window(f) * take_.noise_N[column], 2) * (std::norm(row[column]) + std::norm(row[2 + column]));
+    }
+    return std::sqrt(power / steps * 2 * window.edge_Hz / take_.rate_Hz);
+  }
+
+  /// Up to where both places can be told apart: their sum has its first pole at 1 / (4 d).
+  [[nodiscard]] static smooth_window below_pole(const smooth_window& window, double half_delay_s) noexcept {
+    return {half_delay_s > 0 ? std::min(window.edge_Hz, 0.22 / half_delay_s) : window.edge_Hz};
+  }
+
   static constexpr double pole_width = 0.1;  ///< where the piece between both places is a quarter wave long, their sum is all noise
 
 private:
-
-  /// Rolling at one place under a newton at the same (`across` false) or at the other; `first`, `rest`: delays to the ends.
-  [[nodiscard]] static complex rolling(const torsion_waveguide& t, double w, double first, double rest, double between, bool across) {
-    const complex g(0.5 * w / t.q, w);
-    return std::sinh(g * first) * std::sinh(g * (across ? rest : rest + between)) / std::sinh(g * (first + rest + between)) / t.impedance_Ns_m;
+  [[nodiscard]] torsion_pair rolling(double half_delay_s, const torsion_values& v, torsion_damping damping) const {
+    return {{(take_.delay_s[0] - half_delay_s) / v.speed_ratio, 2 * half_delay_s / v.speed_ratio, (take_.delay_s[1] - half_delay_s) / v.speed_ratio},
+            take_.impedance_Ns_m * v.impedance_ratio, v.q, damping};
   }
 
   /// Rows: surface at a, surface at b, two columns of compliance; columns: F_1, F_2.
-  [[nodiscard]] std::array<complex, 8> passage(double f, double d, const torsion_waveguide& torsion) const {
+  [[nodiscard]] std::array<complex, 8> passage(double f, double d, const torsion_pair& torsion) const {
     if (f == 0) return {};
     const double w = 2 * std::numbers::pi * f, eps = take_.stiffness_s2, Z = take_.impedance_Ns_m * wave_impedance_ratio(w, eps);
     const complex g(0.5 * w * take_.inverse_q * slowness_ratio(w, eps), phase_rate(w, eps));
     const complex near_field(0, -near_field_ratio(w, eps) / (2 * Z * force_factor(w, eps)));
-    const double a = take_.delay_s[0] - d, b = take_.delay_s[1] - d, faster = take_.delay_s[0] / torsion.delay_s[0];
+    const double a = take_.delay_s[0] - d, b = take_.delay_s[1] - d;
     const complex cosh_d = std::cosh(g * d), sinh_d = std::sinh(g * d), tanh_d = sinh_d * std::conj(cosh_d) / (std::norm(cosh_d) + pole_width * pole_width);
-    const complex haa = rolling(torsion, w, a / faster, b / faster, 2 * d / faster, false), hbb = rolling(torsion, w, b / faster, a / faster, 2 * d / faster, false);
-    const complex hab = rolling(torsion, w, a / faster, b / faster, 2 * d / faster, true);
+    const auto rolls = torsion(f);
     std::array<complex, 8> out;
     for (const std::size_t side : {0U, 1U}) {
       const double own = side == 0 ? a : b, sign = side == 0 ? 1 : -1;
       const complex v = std::sinh(g * own) / Z, c = std::cosh(g * own), sum = c + tanh_d * Z * v;
       const complex difference = d > 0 ? sign * (c + Z * v * cosh_d * std::conj(sinh_d) / (std::norm(sinh_d) + 1e-12)) : complex(0);
       const complex fa = 0.5 * (sum + difference), fb = 0.5 * (sum - difference);
-      out[side] = (side == 0 ? v : complex(0)) + (haa + near_field) * fa + hab * fb;
-      out[2 + side] = (side == 1 ? v : complex(0)) + (hbb + near_field) * fb + hab * fa;
+      out[side] = (side == 0 ? v : complex(0)) + (rolls.aa + near_field) * fa + rolls.across * fb;
+      out[2 + side] = (side == 1 ? v : complex(0)) + (rolls.bb + near_field) * fb + rolls.across * fa;
       out[4 + side] = sum * complex(0, w * stick_record::compliance_unit);
       out[6 + side] = out[4 + side] * std::pow(f / stick_record::compliance_corner_Hz, 2);
     }
@@ -98,18 +116,103 @@ namespace detail {
   return cost;
 }
 
-/// Rows of the stick equation at both places; the same samples for every width.
-[[nodiscard]] inline stick_design width_design(const std::vector<wide_motion>& motions, const std::vector<std::vector<char>>& marked) {
+/// The half delay that costs least in one take; 0: no width costs less than none.
+[[nodiscard]] inline double search_width(wide_record& wide, const stick_record& record, const torsion_values& torsion) {
+  const auto& delay = record.take().delay_s;
+  const auto cost = [&](double d) { return width_cost(wide.at(d, record.window(), torsion), record); };
+  const double most = std::min(2e-5, 0.2 * std::min(delay[0], delay[1]));
+  double best = 0, least = cost(0);
+  for (double d = 2.5e-7; d < most; d += std::max(2.5e-7, 0.08 * d))
+    if (const double c = cost(d); c < least) least = c, best = d;
+  for (double step = 0.04; best > 0 && step > 2e-3; step /= 2)
+    for (const double d : {best * (1 - step), best * (1 + step)})
+      if (const double c = cost(d); c < least) least = c, best = d;
+  return best;
+}
+
+/// Samples at which both places stick, of each take.
+[[nodiscard]] inline std::vector<std::vector<char>> sticking_at_both(const std::vector<stick_record>& records, std::vector<wide_record>& wide, double half_delay_s,
+                                                                     double below, const torsion_values& torsion) {
+  std::vector<std::vector<char>> marked;
+  for (std::size_t t = 0; t < records.size(); ++t) {
+    const smooth_window window = wide_record::below_pole(records[t].window(), below);
+    const wide_motion motion = wide[t].at(half_delay_s, window, torsion);
+    auto both = sticking_samples(records[t], motion.near_m_s, {.least = 0.1, .most = 0.5}, window);
+    const auto far = sticking_samples(records[t], motion.far_m_s, {.least = 0.1, .most = 0.5}, window);
+    for (std::size_t i = 0; i < both.size(); ++i) both[i] = both[i] && far[i] ? 1 : 0;
+    marked.push_back(std::move(both));
+  }
+  return marked;
+}
+[[nodiscard]] inline bool enough(const std::vector<std::vector<char>>& marked) {
+  std::ptrdiff_t rows = 0;
+  for (const auto& m : marked) rows += std::count(m.begin(), m.end(), 1);
+  return rows >= 400;
+}
+
+/// What is assumed of a contact of some width.
+struct width_model {
+  double half_delay_s = 0;
+  torsion_values torsion{};
+  torsion_damping damping = torsion_damping::constant_q;
+  double below = 0;  ///< the half delay whose pole ends the band
+};
+
+/// The stick equation at both places, of all takes, on the samples that are marked. Shared columns: compliance, the slopes of torsion's
+/// three logarithms, and of the width's where there is one.
+[[nodiscard]] inline stick_design width_design(stick_bench& bench, std::vector<wide_record>& wide, const std::vector<std::vector<char>>& marked, const width_model& m) {
   stick_design d;
-  for (std::size_t t = 0; t < motions.size(); ++t)
-    for (const auto* v : {&motions[t].near_m_s, &motions[t].far_m_s}) {
-      auto shared = std::vector<std::vector<double>>(motions[t].compliance.begin(), motions[t].compliance.end());
-      for (auto& column : shared)
-        for (double& x : column) x = -x;
-      d.rows.push_back(pick(marked[t], *v, shared, {std::vector<double>(v->size(), 1.0)}));
+  for (std::size_t t = 0; t < wide.size(); ++t) {
+    const smooth_window window = wide_record::below_pole(bench.records()[t].window(), m.below);
+    const wide_motion here = wide[t].at(m.half_delay_s, window, m.torsion, m.damping);
+    std::array<std::vector<std::vector<double>>, 2> shared{std::vector(here.compliance.begin(), here.compliance.end()), std::vector(here.compliance.begin(), here.compliance.end())};
+    const auto add_slope = [&](const width_model& up, const width_model& down, double step) {
+      const wide_motion high = wide[t].at(up.half_delay_s, window, up.torsion, up.damping), low = wide[t].at(down.half_delay_s, window, down.torsion, down.damping);
+      for (const std::size_t place : {0U, 1U}) {
+        auto slope = place == 0 ? high.near_m_s : high.far_m_s;
+        add_to(slope, place == 0 ? low.near_m_s : low.far_m_s, -1);
+        for (double& x : slope) x /= 2 * step;
+        shared[place].push_back(std::move(slope));
+      }
+    };
+    for (int k = 0; k < 3; ++k) {
+      width_model up = m, down = m;
+      const double step = k == 0 ? 2e-4 : 2e-3;
+      Eigen::Vector3d high = m.torsion.logs(), low = high;
+      high[k] += step, low[k] -= step;
+      up.torsion = torsion_values::from_logs(high), down.torsion = torsion_values::from_logs(low);
+      add_slope(up, down, step);
     }
+    if (m.half_delay_s > 0) {
+      width_model up = m, down = m;
+      up.half_delay_s *= 1.01, down.half_delay_s /= 1.01;
+      add_slope(up, down, 0.01);
+    }
+    for (const std::size_t place : {0U, 1U}) {
+      for (auto& column : shared[place])
+        for (double& x : column) x = -x;
+      const auto& target = place == 0 ? here.near_m_s : here.far_m_s;
+      d.rows.push_back(pick(marked[t], target, shared[place], {std::vector<double>(target.size(), 1.0)}));
+    }
+  }
   for (int k = 0; k < 2; ++k) d.add_bound(-30, 30);
+  for (int k = 0; k < 3; ++k) d.add_bound(bench.model().torsion ? -2 * bench.model().torsion_tolerance[k] : -1.0, bench.model().torsion ? 2 * bench.model().torsion_tolerance[k] : 1.0);
+  if (m.half_delay_s > 0) d.add_bound(-0.2, 0.2);
   return d;
+}
+
+/// The width settled by Gauss-Newton steps, with whichever convention of torsional damping leaves less.
+[[nodiscard]] inline design_fit settle_width(stick_bench& bench, std::vector<wide_record>& wide, const std::vector<std::vector<char>>& marked, double floor, width_model& m) {
+  const auto settled = [&](width_model& at) {
+    stick_prior held;
+    for (int step = 0; step < 2 && at.half_delay_s > 0; ++step) at.half_delay_s *= std::exp(bounded_regression(width_design(bench, wide, marked, at), floor, held).shared[5]);
+    return fit_design(width_design(bench, wide, marked, at), floor);
+  };
+  width_model other = m;
+  other.damping = torsion_damping::viscous_modes;
+  auto fit = settled(m), viscous = settled(other);
+  if (viscous.density > fit.density) fit = std::move(viscous), m = other;
+  return fit;
 }
 
 }  // namespace detail
@@ -122,36 +225,17 @@ namespace detail {
     if (t.near_N.size() != t.force_N.size() || t.far_N.size() != t.force_N.size()) return std::nullopt;
   auto& records = bench.records();
   std::vector<wide_record> wide;
-  std::vector<torsion_waveguide> rolling;
-  for (std::size_t t = 0; t < takes.size(); ++t) {
-    wide.emplace_back(takes[t], records[t]);
-    rolling.push_back(torsion_of(takes[t].delay_s, takes[t].impedance_Ns_m, torsion->speed_ratio, torsion->impedance_ratio, torsion->q));
-  }
-  const auto cost = [&](double d) { return detail::width_cost(wide[0].at(d, records[0].window(), rolling[0]), records[0]); };
-  const double most = std::min(2e-5, 0.2 * std::min(takes[0].delay_s[0], takes[0].delay_s[1]));
-  double best = 0, least = cost(0);
-  for (double d = 2.5e-7; d < most; d += std::max(2.5e-7, 0.08 * d))
-    if (const double c = cost(d); c < least) least = c, best = d;
+  for (std::size_t t = 0; t < takes.size(); ++t) wide.emplace_back(takes[t], records[t]);
+  double best = detail::search_width(wide[0], records[0], *torsion);
   if (!(best > 0)) return std::nullopt;
-  for (double step = 0.04; step > 2e-3; step /= 2)
-    for (const double d : {best * (1 - step), best * (1 + step)})
-      if (const double c = cost(d); c < least) least = c, best = d;
-  std::vector<wide_motion> with, without;
-  std::vector<std::vector<char>> marked;
-  for (std::size_t t = 0; t < takes.size(); ++t) {
-    with.push_back(wide[t].at(best, records[t].window(), rolling[t]));
-    without.push_back(wide[t].at(0, records[t].window(), rolling[t]));
-    auto both = sticking_samples(records[t], with.back().near_m_s, {.least = 0.1, .most = 0.5});
-    const auto far = sticking_samples(records[t], with.back().far_m_s, {.least = 0.1, .most = 0.5});
-    for (std::size_t i = 0; i < both.size(); ++i) both[i] = both[i] && far[i] ? 1 : 0;
-    marked.push_back(std::move(both));
-  }
-  const auto design = detail::width_design(with, marked);
-  double rows = 0;
-  for (const auto& r : design.rows) rows += static_cast<double>(r.target.size());
-  if (rows < 400) return std::nullopt;
+  double below = best;  // the half delay whose pole ends the band: none where too little sticks for as long as that smears
+  auto marked = detail::sticking_at_both(records, wide, best, below, *torsion);
+  if (!detail::enough(marked)) marked = detail::sticking_at_both(records, wide, best, below = 0, *torsion);
+  if (!detail::enough(marked)) return std::nullopt;
   const double floor = 1e-3 * bench.speed_m_s();
-  const auto wide_fit = fit_design(design, floor), point_fit = fit_design(detail::width_design(without, marked), floor);
+  detail::width_model found{.half_delay_s = best, .torsion = *torsion, .below = below}, point{.torsion = *torsion, .below = below};
+  const auto wide_fit = detail::settle_width(bench, wide, marked, floor, found), point_fit = detail::settle_width(bench, wide, marked, floor, point);
+  best = found.half_delay_s;
   contact_hypothesis h{.effect = "finite-contact-width"};
   h.free_parameters = 1;
   h.statistic = "stick-fluctuation at both places";
@@ -161,6 +245,8 @@ namespace detail {
   h.gain = h.share * h.density;
   h.held_out_gain = h.share * h.held_out_density;
   h.fluctuation = wide_fit.solution.scale / bench.speed_m_s();
+  for (std::size_t t = 0; t < takes.size(); ++t)
+    h.noise = std::max(h.noise, wide[t].noise_m_s(best, wide_record::below_pole(records[t].window(), found.below), found.torsion, found.damping) / bench.speed_m_s());
   const double one_way = takes[0].delay_s[0] + takes[0].delay_s[1], metres = takes[0].length_m > 0 ? takes[0].length_m / one_way : 0;
   const double doubt = 0.02 + 2e-7 / best;  // of what rolling and near field do between the two places
   h.parameters = {{metres > 0 ? "width_m" : "width_s", 2 * best * (metres > 0 ? metres : 1.0), 2 * best * doubt * (metres > 0 ? metres : 1.0)}};

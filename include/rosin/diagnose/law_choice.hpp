@@ -15,8 +15,8 @@
 //
 #pragma once
 
+#include <rosin/diagnose/contact_bristles.hpp>
 #include <rosin/diagnose/contact_slip_effects.hpp>
-#include <rosin/diagnose/contact_stick_effects.hpp>
 
 namespace rosin {
 

@@ -12,6 +12,7 @@
 #include <rosin/torsion/stick_regression.hpp>
 
 #include <array>
+#include <optional>
 
 namespace rosin {
 
@@ -55,6 +56,11 @@ public:
   [[nodiscard]] std::vector<double> force_through(const Transfer& transfer) {
     return force_.through(window(), transfer);
   }
+  /// The force, smoothed. Kept once made.
+  [[nodiscard]] const std::vector<double>& force_N() {
+    if (smooth_.empty()) smooth_ = force_through([](double) { return 1.0; });
+    return smooth_;
+  }
   /// Two columns for what the contact yields besides: compliance_unit s f, and the same times (frequency / corner)^2. Kept once made.
   static constexpr double compliance_unit = 1e-6, compliance_corner_Hz = 5e4;
   [[nodiscard]] const std::vector<std::vector<double>>& compliance() {
@@ -82,15 +88,16 @@ private:
   stick_take take_;
   std::size_t begin_;
   contact_signal<> force_;
-  std::vector<double> relative_;
+  std::vector<double> relative_, smooth_;
   std::vector<std::vector<double>> compliance_;
 };
 
 /// Samples of a record at which the string sticks if its surface moves as `relative_m_s` says; a window's reach inside.
+/// `seen_through`: the window that `relative_m_s` was smoothed by, if it is not the record's.
 [[nodiscard]] inline std::vector<char> sticking_samples(const stick_record& record, const std::vector<double>& relative_m_s,
-                                                        const phase_options& options = {}) {
+                                                        const phase_options& options = {}, std::optional<smooth_window> seen_through = {}) {
   const auto phases = find_phases(std::span(relative_m_s).subspan(record.begin(), record.end() - record.begin()), record.take().rod_speed_m_s, options);
-  const auto inside = interior(phases.sticks, record.end() - record.begin(), record.reach());
+  const auto inside = interior(phases.sticks, record.end() - record.begin(), seen_through.value_or(record.window()).reach(record.take().rate_Hz));
   std::vector<char> all(record.size(), 0);
   std::copy(inside.begin(), inside.end(), all.begin() + static_cast<std::ptrdiff_t>(record.begin()));
   return all;

@@ -22,7 +22,7 @@ const rosin::modal_torsion rolls{7, 3.5, 15};
 
 struct stroke {
   std::vector<double> force, velocity, velocity_near, velocity_far, near, far;
-  double speed = 0, normal = 0, position = 0.27;
+  double speed = 0, normal = 0, position = 0.27, noise = 0.3e-3;
 
   [[nodiscard]] rosin::contact_take take() const {
     const auto at = rosin::contact_at(e_string, position);
@@ -31,7 +31,7 @@ struct stroke {
     t.force_N = force, t.velocity_m_s = velocity, t.velocity_near_m_s = velocity_near, t.velocity_far_m_s = velocity_far;
     t.near_N = near, t.far_N = far, t.rate_Hz = rate, t.rod_speed_m_s = speed, t.normal_force_N = normal;
     t.delay_s = at.delay_s, t.stiffness_s2 = at.stiffness_s2, t.inverse_q = 1e-3, t.impedance_Ns_m = at.impedance_Ns_m, t.length_m = e_string.length_m;
-    t.force_sd_N = 4e-4, t.velocity_sd_m_s = 1.5e-3, t.edge_Hz = 57600, t.start_s = 0.02;
+    t.force_sd_N = 4 * noise / 3, t.velocity_sd_m_s = 5 * noise, t.noise_N = {noise, noise}, t.edge_Hz = 57600, t.start_s = 0.02;
     return t;
   }
 };
@@ -73,18 +73,18 @@ struct springy_rod {
 };
 
 template <class Law>
-[[nodiscard]] stroke play(const Law& law, const rippled_rod& rod, const rosin::modal_torsion& torsion, std::uint64_t seed, double position = 0.27, double duration_s = 0.1) {
+[[nodiscard]] stroke play(const Law& law, const rippled_rod& rod, const rosin::modal_torsion& torsion, std::uint64_t seed, double position = 0.27, double duration_s = 0.1, double noise_N = 0.3e-3) {
   stroke r;
   const auto take = rosin::simulate_stroke({.string = e_string, .torsion = torsion}, law, rod, {.position = position, .duration_s = duration_s}, {.oversampling = 4});
   if (!take) return r;
-  const rosin::converter sensor{.gain = 1, .newtons_per_full_scale = 2, .noise_N = 0.3e-3, .bits = 16};
+  const rosin::converter sensor{.gain = 1, .newtons_per_full_scale = 2, .noise_N = noise_N, .bits = 16};
   r.near = rosin::convert(take->force_near_N, rate, sensor, seed).newtons();
   r.far = rosin::convert(take->force_far_N, rate, sensor, seed + 1).newtons();
   rosin::reconstructor<double> reconstruct(rosin::contact_at(e_string, position), {38400, 57600}, rate, 1e-5);
   const auto motion = reconstruct(r.near, r.far);
   for (std::size_t i = 0; i < take->size(); ++i) r.force.push_back(motion.force_N(i)), r.velocity.push_back(motion.velocity_m_s(i));
   r.velocity_near = motion.velocity_near_m_s, r.velocity_far = motion.velocity_far_m_s;
-  r.speed = rod.steady.speed_m_s, r.normal = rod.steady.normal_force_N, r.position = position;
+  r.speed = rod.steady.speed_m_s, r.normal = rod.steady.normal_force_N, r.position = position, r.noise = noise_N;
   return r;
 }
 

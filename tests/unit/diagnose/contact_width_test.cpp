@@ -66,7 +66,7 @@ TEST_CASE("contact width: both places of a wide contact follow from the ends' fo
   take.rate_Hz = rate, take.rod_speed_m_s = 1e-9, take.delay_s = at.delay_s, take.impedance_Ns_m = at.impedance_Ns_m, take.stiffness_s2 = at.stiffness_s2, take.inverse_q = 1e-3;
   const rosin::stick_record record(rosin::stick_bench::stick_takes({take}).front());
   rosin::wide_record wide(take, record);
-  const auto rigid = rosin::torsion_of(at.delay_s, at.impedance_Ns_m, 7, 1e9, 15);
+  const rosin::torsion_values rigid{7, 1e9, 15};
   const double d = 0.5 * width / e_string.wave_speed_m_s();
   const auto right = wide.at(d, {30e3}, rigid), point = wide.at(0, {30e3}, rigid);
   CHECK(error(right.near_m_s, truth.v_near) < 0.05);
