@@ -11,6 +11,7 @@ namespace tool {
 namespace {
 
 constexpr int most_contact_effects = 2;
+constexpr double periods_in_picture = 4;
 constexpr double further_tone_share = 0.05;     ///< of what was gained so far on the same statistic: no model of a contact is exact either,
 constexpr double further_give_share = 0.2;      ///< and what one model of its give leaves another one takes up
 constexpr double further_other_share = 0.005;   ///< of what was gained on another statistic
@@ -114,6 +115,61 @@ bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::conta
   return apart == strokes.end() && statistic.empty();
 }
 
+/// The stretch of so many seconds in which most is left, summed over its samples; a few that stand out far count as four times the median.
+struct loud_stretch {
+  double begin_s = 0, sum = 0;
+};
+loud_stretch loudest(const rosin::contact_trace& trace, double length_s) {
+  std::vector<double> sizes;
+  for (const double x : trace.left) sizes.push_back(std::abs(x));
+  loud_stretch best;
+  if (sizes.empty()) return best;
+  std::vector<double> ordered = sizes;
+  std::nth_element(ordered.begin(), ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2), ordered.end());
+  const double most = 4 * ordered[ordered.size() / 2];
+  for (std::size_t i = 0, k = 0; i < sizes.size(); i = k) {
+    double sum = 0;
+    for (k = i; k < sizes.size() && trace.time_s[k] < trace.time_s[i] + length_s; ++k) sum += std::min(most, sizes[k]);
+    if (sum > best.sum) best = {trace.time_s[i], sum};
+  }
+  return best;
+}
+
+/// The take and the stretch of it that the page shows: four periods of the string, or of a ripple.
+contact_picture picture_of(const std::vector<rosin::contact_trace>& before, const std::string& statistic, double length_s) {
+  contact_picture out;
+  out.statistic = data_of(statistic);
+  loud_stretch most;
+  for (const auto& trace : before)
+    if (const auto here = loudest(trace, length_s); here.sum > most.sum) most = here, out.before = {trace}, out.take = trace.take;
+  out.shown_s = {most.begin_s, most.begin_s + length_s};
+  return out;
+}
+
+const std::vector<rosin::contact_trace>& traces_of(const std::string& statistic, const rosin::contact_findings& found) { return data_of(statistic) == "friction-residual" ? found.slipping : found.sticking; }
+
+double period_of(const std::vector<diagnosed_stroke>& strokes) {
+  const auto& delay = strokes.front().calibration.at.delay_s;
+  return 2 * (delay[0] + delay[1]);
+}
+double shown_length_s(const rosin::contact_hypothesis& h, const std::vector<diagnosed_stroke>& strokes) {
+  for (const auto& p : h.parameters)
+    if (p.name == "frequency_Hz" && h.effect.find("ripple") != std::string::npos && p.value > 0) return periods_in_picture / p.value;
+  return periods_in_picture * period_of(strokes);
+}
+
+/// What the model that was found leaves of the take that the page shows.
+void add_after(const std::vector<rosin::contact_trace>& after, contact_picture& picture) {
+  for (const auto& trace : after)
+    if (trace.take == picture.take) picture.after = {trace};
+}
+
+/// Finishes the picture; `alone`: nothing else is wrong with the rig, so that this is where it shows.
+void show(rig_diagnosis& d, double noise, bool alone) {
+  d.contact->noise = noise;
+  if (alone && !d.contact->before.empty()) d.take = d.contact->take, d.time_s = d.contact->shown_s;
+}
+
 using asked_contact = std::function<rosin::contact_findings(const rosin::contact_model&)>;
 
 /// The first of two once more, with the second in the model: it may have held a part of it.
@@ -153,21 +209,27 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   const double excess = stick_excess(found);
   for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
     const rosin::contact_hypothesis best = found.hypotheses.front();
+    if (round == 0) d.contact = picture_of(best.before.empty() ? traces_of(best.statistic, found) : best.before, best.statistic, shown_length_s(best, strokes));
+    if (round == 0) add_after(best.after, *d.contact);
     gained[data_of(best.statistic)] += best.gain;
     sticking = sticking || best.statistic == "stick-fluctuation";
     if (round == 0) first = best.statistic;
     if (round > 0) settle_first(ask, declared, best, d.missing[others]);
     model = rosin::include(std::move(model), best);
     found = ask(model);
+    if (first == data_of(first)) add_after(traces_of(first, found), *d.contact);
     if (others == 0 && first == d.metric) d.after = left_in(first, found), d.noise_floor = floor_in(first, found);
   }
-  if (d.missing.size() == others) {
-    if (!found.as_declared && others == 0) judge_by(found.hypotheses.front().statistic, found, d);
-    return others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
-  }
+  const bool named = d.missing.size() > others;
+  if (!named && others == 0 && !found.as_declared) judge_by(found.hypotheses.front().statistic, found, d);
+  const bool rests = named || others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
+  if (!rests && d.metric != "force-consistency") d.contact = picture_of(traces_of(d.metric, found), d.metric, periods_in_picture * period_of(strokes)), first = d.metric;
+  if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
+  if (!named) return rests;
   if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
+  d.contact->after.clear();
   return false;
 }
 

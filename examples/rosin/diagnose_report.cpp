@@ -107,14 +107,55 @@ figure spectrum_figure(const residual_picture& r, const rig_diagnosis& d, bool c
   return f;
 }
 
+/// What is left at the samples that stick, or slip; a gap wherever they do not.
+curve left_curve(const rosin::contact_trace& trace, const std::array<double, 2>& shown_s, const char* colour) {
+  curve c{"left", {}, {}, colour, 1.4};
+  double step = 1e9;
+  for (std::size_t i = 1; i < trace.time_s.size(); ++i) step = std::min(step, trace.time_s[i] - trace.time_s[i - 1]);
+  for (std::size_t i = 0; i < trace.time_s.size(); ++i) {
+    if (trace.time_s[i] < shown_s[0] || trace.time_s[i] > shown_s[1]) continue;
+    const double x = 1e3 * trace.time_s[i];
+    if (!c.x.empty() && x - c.x.back() > 2.5e3 * step) c.x.push_back(x), c.y.push_back(std::nan(""));
+    c.x.push_back(x), c.y.push_back(trace.left[i]);
+  }
+  return c;
+}
+
+figure contact_figure(const contact_picture& p) {
+  const bool sticks = p.statistic == "stick-fluctuation";
+  figure f;
+  double most = 2.5 * p.noise;
+  const auto add = [&](const rosin::contact_trace& trace, const char* title, const char* colour) {
+    panel one{title, "time in " + p.take + " / ms", sticks ? "of the rod's speed" : "coefficient of friction", {}, {}, {}, {}, 230};
+    const std::pair range{1e3 * p.shown_s[0], 1e3 * p.shown_s[1]};
+    one.curves = {left_curve(trace, p.shown_s, colour), {"noise, two standard deviations", {range.first, range.second}, {2 * p.noise, 2 * p.noise}, colour::model, 1, 2},
+                  {"", {range.first, range.second}, {-2 * p.noise, -2 * p.noise}, colour::model, 1, 2}};
+    std::vector<double> sizes;
+    for (const double y : one.curves.front().y)
+      if (std::isfinite(y)) sizes.push_back(std::abs(y));
+    std::sort(sizes.begin(), sizes.end());
+    if (!sizes.empty()) most = std::max(most, 1.2 * sizes[(sizes.size() - 1) * 97 / 100]);
+    one.x_range = range;
+    f.panels.push_back(one);
+  };
+  add(p.before.front(), "(a) as declared", colour::near);
+  if (!p.after.empty()) add(p.after.front(), "(b) corrected", colour::far);
+  for (auto& one : f.panels) one.y_range = std::pair{-1.1 * most, 1.1 * most};
+  f.share_axis();
+  f.caption = (sticks ? "Where the string sticks: its surface's velocity less the rod's, in " : "Where the string slips: the force over the normal force less what the law of friction has, in ") + p.take +
+              ", the stretch in which most of it is left by the contact as declared" + (p.after.empty() ? "." : ", and by the corrected one.");
+  return f;
+}
+
 void add_figures(const rig_diagnosis& d, report_page& page) {
   if (d.pickup) page.figures = pickup_figures(d);
+  if (d.contact && !d.contact->before.empty()) page.figures.push_back(contact_figure(*d.contact));
   if (!d.residual) return;
   const residual_picture& r = *d.residual;
-  const bool corrected = d.after && d.time_s && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) { return r.before.force_N != r.after.force_N; });
+  const bool told = d.time_s && d.take == r.take, corrected = d.after && told && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) { return r.before.force_N != r.after.force_N; });
   figure before = residual_figure(r, r.before, d);
   before.caption = "What the declared model leaves of " + r.take + " " + r.stretch + ", both ends, up to " + number(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
-  if (d.time_s) before.caption += " " + r.bar + " " + number(d.residual_over_noise) + " times the noise.";
+  if (told) before.caption += " " + r.bar + " " + number(d.residual_over_noise) + " times the noise.";
   else before.caption += " It is within the noise: the plucks show no mismatch.";
   page.figures.push_back(before);
   if (corrected) {
@@ -175,7 +216,7 @@ void add_limits(const rig_diagnosis& d, report_page& page) {
     if (!m.indistinguishable_from.empty())
       page.notes.push_back("These recordings cannot tell " + m.effect + " from " + list_of(m.indistinguishable_from, "") + ". Plucks at another place, longer or harder ones, may.");
   if (d.held_out.size() == 1) page.notes.emplace_back("A single take was predicted; more plucks, at several places and of several strengths, would make the answer surer.");
-  if (d.metric != "pluck-residual") page.notes.emplace_back("The mismatch is between the strokes and the model; the figures show the pluck, which has to be right first.");
+  if (d.metric != "pluck-residual") page.notes.emplace_back("The mismatch is between the strokes and the model; the plucks' figures show that these are right, which has to come first.");
 }
 
 }  // namespace

@@ -189,10 +189,8 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   }
   rank(d);
   d.verdict = !p.explained || contact_open || !accounted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";
-  if (d.verdict != "no-mismatch" && d.take.empty()) {
-    d.take = strokes.empty() ? p.data.takes.front().name : strokes.front().name;
-    d.residual_over_noise = d.noise_floor > 0 ? d.before / d.noise_floor : 0;
-  }
+  if (d.verdict != "no-mismatch" && d.take.empty()) d.take = strokes.empty() ? p.data.takes.front().name : strokes.front().name;
+  if (d.verdict != "no-mismatch" && !(d.residual_over_noise > 0)) d.residual_over_noise = d.noise_floor > 0 ? d.before / d.noise_floor : 0;
   if (d.verdict == "no-mismatch") d.after.reset();
   return d;
 }

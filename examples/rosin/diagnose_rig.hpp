@@ -6,6 +6,7 @@
 
 #include "rig_input.hpp"
 
+#include <rosin/diagnose/contact_take.hpp>
 #include <rosin/propagate/band.hpp>
 
 #include <array>
@@ -72,6 +73,14 @@ struct pickup_picture {
   std::vector<pickup_partial> partials;
 };
 
+/// What the declared contact and the corrected one leave of the stroke in which it shows most.
+struct contact_picture {
+  std::string take, statistic;                 ///< "stick-fluctuation" or "friction-residual"
+  std::vector<rosin::contact_trace> before, after;  ///< one of each; after: none where nothing was found
+  std::array<double, 2> shown_s{};             ///< the stretch where most is left
+  double noise = 0;
+};
+
 struct rig_diagnosis {
   std::string title, verdict;
   std::vector<missing_effect> missing;
@@ -88,6 +97,7 @@ struct rig_diagnosis {
   std::string acts;  ///< what is left of an unexplained mismatch: "on the string at 0.62 +- 0.01 of its length", "at the near end", "in the far channel"
   double residual_over_noise = 0;
   std::optional<residual_picture> residual;
+  std::optional<contact_picture> contact;
   std::vector<std::string> assumed, warnings;
   std::optional<pickup_picture> pickup;  ///< of a rig without two force channels
 };

@@ -30,6 +30,7 @@ struct contact_findings {
   bool as_declared = true;
   bool slips_resolved = true;                         ///< slips last long enough in the band for the law's residual to be judged
   std::vector<std::string> warnings;
+  std::vector<contact_trace> sticking, slipping;      ///< what the model as declared leaves, of each take
 
   /// What an effect has to gain, in nats, so that it counts.
   [[nodiscard]] double needed(const contact_hypothesis& h) const {
@@ -89,6 +90,7 @@ inline void add_stick_hypotheses(stick_bench& bench, const std::vector<contact_t
     if (std::find(known.begin(), known.end(), effect) == known.end()) out.hypotheses.push_back(stick_hypothesis(bench, takes, effect));
   out.stick_fluctuation = bench.fit().solution.scale / bench.speed_m_s();
   out.stick_floor = bench.doubt_m_s() / bench.speed_m_s();
+  for (std::size_t t = 0; t < takes.size(); ++t) out.sticking.push_back(sticking_trace(bench, bench.declared().rows[t], bench.fit().solution.residual[t], t, takes[t].name));
   out.independent = bench.independent();
   reconsider_damping(bench, takes, out.hypotheses);
   common_share(out.hypotheses, "stick-fluctuation");
@@ -122,6 +124,8 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   out.friction_residual = bench.declared().residual();
   out.friction_floor = bench.floor();
   out.slips_resolved = slips_are_resolved(bench, takes);
+  for (std::size_t t = 0; t < takes.size(); ++t)
+    out.slipping.push_back(trace_of(bench.declared().design.rows[t].sample, bench.declared().fit.solution.residual[t], sticks.records()[t].origin(), takes[t].rate_Hz, 1, takes[t].name));
   common_share(out.hypotheses, "friction-residual");
 }
 

@@ -219,4 +219,23 @@ private:
   design_fit fit_;
 };
 
+namespace detail {
+
+/// `origin`: where in the take the samples count from; `unit`: what the residual is shown in.
+[[nodiscard]] inline contact_trace trace_of(const std::vector<std::size_t>& samples, const Eigen::VectorXd& residual, std::size_t origin, double rate_Hz, double unit, const std::string& take) {
+  contact_trace out{take, {}, {}};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    out.time_s.push_back(static_cast<double>(origin + samples[i]) / rate_Hz);
+    out.left.push_back(residual[static_cast<Eigen::Index>(i)] / unit);
+  }
+  return out;
+}
+
+[[nodiscard]] inline contact_trace sticking_trace(stick_bench& bench, const stick_rows& rows, const Eigen::VectorXd& residual, std::size_t take, const std::string& name) {
+  const auto& record = bench.records()[take];
+  return trace_of(rows.sample, residual, record.origin(), record.take().rate_Hz, bench.speed_m_s(), name);
+}
+
+}  // namespace detail
+
 }  // namespace rosin

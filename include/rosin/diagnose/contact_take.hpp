@@ -65,6 +65,12 @@ struct contact_parameter {
   [[nodiscard]] std::array<double, 2> ci95() const noexcept { return {value - 1.96 * sd, value + 1.96 * sd}; }
 };
 
+/// What a model leaves of one take at the samples that it speaks of: of the rod's speed, or as a coefficient of friction.
+struct contact_trace {
+  std::string take;
+  std::vector<double> time_s, left;  ///< time in the take
+};
+
 struct contact_hypothesis {
   std::string effect;                          ///< name in the catalogue
   std::vector<contact_parameter> parameters{};
@@ -77,6 +83,7 @@ struct contact_hypothesis {
   double edge_Hz = 0;                          ///< band that its parameters are from, where that is narrower than the takes'; else 0
   std::string statistic{};                     ///< "stick-fluctuation" or "friction-residual"
   bool decided = true;                         ///< the parameters are determined
+  std::vector<contact_trace> before{}, after{};  ///< where that is not what the findings show of the models with and without it
 
   /// Gain less half a logarithm of the independent samples for each parameter (Schwarz).
   [[nodiscard]] double evidence(double independent) const noexcept { return gain - 0.5 * free_parameters * std::log(std::max(1.0, independent)); }

@@ -247,6 +247,11 @@ struct width_model {
   h.fluctuation = wide_fit.solution.scale / bench.speed_m_s();
   for (std::size_t t = 0; t < takes.size(); ++t)
     h.noise = std::max(h.noise, wide[t].noise_m_s(best, wide_record::below_pole(records[t].window(), found.below), found.torsion, found.damping) / bench.speed_m_s());
+  const auto rows = detail::width_design(bench, wide, marked, found).rows;
+  for (std::size_t t = 0; t < takes.size(); ++t) {  // the place that is nearer to the near end stands for both
+    h.before.push_back(detail::sticking_trace(bench, rows[2 * t], point_fit.solution.residual[2 * t], t, takes[t].name));
+    h.after.push_back(detail::sticking_trace(bench, rows[2 * t], wide_fit.solution.residual[2 * t], t, takes[t].name));
+  }
   const double one_way = takes[0].delay_s[0] + takes[0].delay_s[1], metres = takes[0].length_m > 0 ? takes[0].length_m / one_way : 0;
   const double doubt = 0.02 + 2e-7 / best;  // of what rolling and near field do between the two places
   h.parameters = {{metres > 0 ? "width_m" : "width_s", 2 * best * (metres > 0 ? metres : 1.0), 2 * best * doubt * (metres > 0 ? metres : 1.0)}};
