@@ -7,7 +7,7 @@
 
 namespace {
 
-double value(const rosin::contact_hypothesis& h, const char* name) {
+double named_value(const rosin::contact_hypothesis& h, const char* name) {
   for (const auto& p : h.parameters)
     if (p.name == name) return p.value;
   return -1;
@@ -39,8 +39,8 @@ TEST_CASE("contact bristles: their stiffness, and that they let go bit by bit") 
     const auto h = rosin::bristle_hypothesis(bench, strokes.takes());
     CHECK(h.decided);
     CHECK(h.gain > 200);
-    CHECK(value(h, "bristle_stiffness_N_m") == doctest::Approx(stiffness).epsilon(0.03));
-    CHECK(value(h, "friction_limit") > 0);
+    CHECK(named_value(h, "bristle_stiffness_N_m") == doctest::Approx(stiffness).epsilon(0.03));
+    CHECK(named_value(h, "friction_limit") > 0);
     CHECK(h.fluctuation < 1.1 * h.noise);  // nothing is left but noise
     CHECK(rosin::rod_hypothesis(bench).density < h.density);
     bench = rosin::stick_bench(strokes.takes(), rosin::include(contact_rigs::declared(), h));
@@ -53,7 +53,7 @@ TEST_CASE("contact bristles: sensors ten times as noisy do not make them stiffer
   rosin::stick_bench bench(strokes.takes(), contact_rigs::declared());
   REQUIRE(bench.usable());
   const auto plain = rosin::bristle_hypothesis(bench), h = rosin::bristle_hypothesis(bench, strokes.takes());
-  CHECK(value(plain, "bristle_stiffness_N_m") > 1.2 * 1.5e4);  // in the whole band they would
+  CHECK(named_value(plain, "bristle_stiffness_N_m") > 1.2 * 1.5e4);  // in the whole band they would
   CHECK(h.decided);
   const auto& s0 = h.parameters.front();
   CHECK(s0.value == doctest::Approx(1.5e4).epsilon(0.05));
