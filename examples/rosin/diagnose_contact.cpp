@@ -209,11 +209,13 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   const double excess = stick_excess(found);
   for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
     const rosin::contact_hypothesis best = found.hypotheses.front();
-    if (round == 0) d.contact = picture_of(best.before.empty() ? traces_of(best.statistic, found) : best.before, best.statistic, shown_length_s(best, strokes));
-    if (round == 0) add_after(best.after, *d.contact);
+    if (round == 0) {
+      first = best.statistic;
+      d.contact = picture_of(best.before.empty() ? traces_of(first, found) : best.before, first, shown_length_s(best, strokes));
+      add_after(best.after, *d.contact);
+    }
     gained[data_of(best.statistic)] += best.gain;
     sticking = sticking || best.statistic == "stick-fluctuation";
-    if (round == 0) first = best.statistic;
     if (round > 0) settle_first(ask, declared, best, d.missing[others]);
     model = rosin::include(std::move(model), best);
     found = ask(model);

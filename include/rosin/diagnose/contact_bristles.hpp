@@ -47,11 +47,7 @@ struct bending_fit {
 [[nodiscard]] inline bending_fit fit_bending(stick_bench& bench, double delay_s, const bristle_yield& yields, double size, const std::vector<double>& softer) {
   bending_fit out{.delay_s = delay_s, .yields = yields, .design = bench.declared()};
   const auto bends = bending_columns(bench, delay_s, softer);
-  for (std::size_t t = 0; t < bends.size(); ++t) {
-    auto column = bench.faster(t, yields, bends[t], size);
-    std::transform(bends[t].begin(), bends[t].end(), column.begin(), column.begin(), std::multiplies<>());
-    out.design.add_shared(t, column);
-  }
+  for (std::size_t t = 0; t < bends.size(); ++t) out.design.add_shared(t, bench.flowing(t, yields, bends[t], size));
   out.design.bounds[0] = {-other_compliance, -other_compliance}, out.design.bounds[1] = {0, 0};
   out.design.add_bound(0, 1e30);
   stick_prior held;
@@ -94,11 +90,8 @@ struct bending_fit {
   double best = 0;
   bristle_yield out;
   const auto attempt = [&](const bristle_yield& y) {
-    auto columns = bends;
-    for (std::size_t t = 0; t < columns.size(); ++t) {
-      const auto scaling = bench.faster(t, y, bends[t], compliance);
-      std::transform(scaling.begin(), scaling.end(), columns[t].begin(), columns[t].begin(), std::multiplies<>());
-    }
+    std::vector<std::vector<double>> columns;
+    for (std::size_t t = 0; t < bends.size(); ++t) columns.push_back(bench.flowing(t, y, bends[t], compliance));
     double size = 0;
     if (const double gain = quick.by(columns, size); size > 0 && gain > best) best = gain, out = y;
   };

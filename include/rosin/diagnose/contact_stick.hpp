@@ -85,14 +85,13 @@ public:
     return d;
   }
 
-  /// By what a take's surface moves faster than its bristles bend, at the samples that count (else 1). `bends`: their column in the equation,
-  /// for a micrometre a newton; `compliance`: what they have.
-  [[nodiscard]] std::vector<double> faster(std::size_t take, const bristle_yield& yields, const std::vector<double>& bends, double compliance) {
+  /// How a take's surface moves over bristles that flow as well as bend, at the samples that count. `bends`: their column in the equation, for a
+  /// micrometre a newton; `compliance`: what they have.
+  [[nodiscard]] std::vector<double> flowing(std::size_t take, const bristle_yield& yields, std::vector<double> bends, double compliance) {
     const auto& force = records_[take].force_N();
-    std::vector<double> out(bends.size(), 1.0);
-    for (std::size_t i = 0; i < out.size(); ++i)
-      if (marked_[take][i]) out[i] = yields.faster(force[i], normal_force_N_[take], -compliance * bends[i]);
-    return out;
+    for (std::size_t i = 0; i < bends.size(); ++i)
+      if (marked_[take][i]) bends[i] *= yields.faster(force[i], normal_force_N_[take], -compliance * bends[i]);
+    return bends;
   }
 
   /// What the sensors' noise is in a column, a take's force through a transfer function, rms: it reaches the force as
@@ -187,12 +186,8 @@ private:
     }
     if (model_.bristle_stiffness_N_m) {
       const double delay = model_.bristle_delay_s.value_or(0);
-      for (std::size_t t = 0; t < records_.size(); ++t) {
-        auto bends = records_[t].force_through([=](double f) { return bristle_bending(f, delay); });
-        const auto scaling = faster(t, model_.yields, bends, 1e6 / *model_.bristle_stiffness_N_m);
-        std::transform(bends.begin(), bends.end(), scaling.begin(), bends.begin(), std::multiplies<>());
-        d.add_shared(t, bends);
-      }
+      for (std::size_t t = 0; t < records_.size(); ++t)
+        d.add_shared(t, flowing(t, model_.yields, records_[t].force_through([=](double f) { return bristle_bending(f, delay); }), 1e6 / *model_.bristle_stiffness_N_m));
       d.add_bound(0, 1e9);
     }
     if (model_.speed_ripple_Hz)

@@ -201,18 +201,26 @@ struct width_model {
   return d;
 }
 
+struct settled_width {
+  width_model model;
+  stick_design design;
+  design_fit fit;
+};
+
 /// The width settled by Gauss-Newton steps, with whichever convention of torsional damping leaves less.
-[[nodiscard]] inline design_fit settle_width(stick_bench& bench, std::vector<wide_record>& wide, const std::vector<std::vector<char>>& marked, double floor, width_model& m) {
-  const auto settled = [&](width_model& at) {
+[[nodiscard]] inline settled_width settle_width(stick_bench& bench, std::vector<wide_record>& wide, const std::vector<std::vector<char>>& marked, double floor, width_model m) {
+  const auto settled = [&](torsion_damping damping) {
+    settled_width out{m, {}, {}};
+    out.model.damping = damping;
     stick_prior held;
-    for (int step = 0; step < 2 && at.half_delay_s > 0; ++step) at.half_delay_s *= std::exp(bounded_regression(width_design(bench, wide, marked, at), floor, held).shared[5]);
-    return fit_design(width_design(bench, wide, marked, at), floor);
+    for (int step = 0; step < 2 && m.half_delay_s > 0; ++step)
+      out.model.half_delay_s *= std::exp(bounded_regression(width_design(bench, wide, marked, out.model), floor, held).shared[5]);
+    out.design = width_design(bench, wide, marked, out.model);
+    out.fit = fit_design(out.design, floor);
+    return out;
   };
-  width_model other = m;
-  other.damping = torsion_damping::viscous_modes;
-  auto fit = settled(m), viscous = settled(other);
-  if (viscous.density > fit.density) fit = std::move(viscous), m = other;
-  return fit;
+  auto constant = settled(torsion_damping::constant_q), viscous = settled(torsion_damping::viscous_modes);
+  return viscous.fit.density > constant.fit.density ? viscous : constant;
 }
 
 }  // namespace detail
@@ -233,9 +241,10 @@ struct width_model {
   if (!detail::enough(marked)) marked = detail::sticking_at_both(records, wide, best, below = 0, *torsion);
   if (!detail::enough(marked)) return std::nullopt;
   const double floor = 1e-3 * bench.speed_m_s();
-  detail::width_model found{.half_delay_s = best, .torsion = *torsion, .below = below}, point{.torsion = *torsion, .below = below};
-  const auto wide_fit = detail::settle_width(bench, wide, marked, floor, found), point_fit = detail::settle_width(bench, wide, marked, floor, point);
-  best = found.half_delay_s;
+  const auto found = detail::settle_width(bench, wide, marked, floor, {.half_delay_s = best, .torsion = *torsion, .below = below});
+  const auto point = detail::settle_width(bench, wide, marked, floor, {.torsion = *torsion, .below = below});
+  const auto &wide_fit = found.fit, &point_fit = point.fit;
+  best = found.model.half_delay_s;
   contact_hypothesis h{.effect = "finite-contact-width"};
   h.free_parameters = 1;
   h.statistic = "stick-fluctuation at both places";
@@ -246,11 +255,10 @@ struct width_model {
   h.held_out_gain = h.share * h.held_out_density;
   h.fluctuation = wide_fit.solution.scale / bench.speed_m_s();
   for (std::size_t t = 0; t < takes.size(); ++t)
-    h.noise = std::max(h.noise, wide[t].noise_m_s(best, wide_record::below_pole(records[t].window(), found.below), found.torsion, found.damping) / bench.speed_m_s());
-  const auto rows = detail::width_design(bench, wide, marked, found).rows;
+    h.noise = std::max(h.noise, wide[t].noise_m_s(best, wide_record::below_pole(records[t].window(), below), found.model.torsion, found.model.damping) / bench.speed_m_s());
   for (std::size_t t = 0; t < takes.size(); ++t) {  // the place that is nearer to the near end stands for both
-    h.before.push_back(detail::sticking_trace(bench, rows[2 * t], point_fit.solution.residual[2 * t], t, takes[t].name));
-    h.after.push_back(detail::sticking_trace(bench, rows[2 * t], wide_fit.solution.residual[2 * t], t, takes[t].name));
+    h.before.push_back(detail::sticking_trace(bench, found.design.rows[2 * t], point_fit.solution.residual[2 * t], t, takes[t].name));
+    h.after.push_back(detail::sticking_trace(bench, found.design.rows[2 * t], wide_fit.solution.residual[2 * t], t, takes[t].name));
   }
   const double one_way = takes[0].delay_s[0] + takes[0].delay_s[1], metres = takes[0].length_m > 0 ? takes[0].length_m / one_way : 0;
   const double doubt = 0.02 + 2e-7 / best;  // of what rolling and near field do between the two places
