@@ -12,6 +12,7 @@
 #include <jack/jack.h>
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -65,6 +66,8 @@ private:
     jack_client_t* client = nullptr;
     jack_nframes_t expected = 0;
     bool running = false;
+    std::atomic<bool> joined{false};
+    int cycles_to_wait = 2;  ///< until the server has taken over the connections: silence that nobody played
   };
   struct close_client {
     void operator()(jack_client_t* client) const noexcept { jack_client_close(client); }
@@ -72,6 +75,8 @@ private:
 
   static int process(jack_nframes_t frames, void* argument) noexcept {
     auto& s = *static_cast<shared*>(argument);
+    if (!s.joined.load(std::memory_order_acquire)) return 0;
+    if (s.cycles_to_wait > 0) return --s.cycles_to_wait, 0;
     const jack_nframes_t now = jack_last_frame_time(s.client);
     if (s.running && now != s.expected) s.ring.lost(now - s.expected);
     s.running = true;
@@ -94,6 +99,7 @@ private:
     for (std::size_t c = 0; c < from.size(); ++c)
       if (!from[c].empty() && jack_connect(client, from[c].c_str(), jack_port_name(state_->ports[c])) != 0)
         return failure{"jack: there is no port " + from[c] + " to listen to"};
+    state_->joined.store(true, std::memory_order_release);
     return std::nullopt;
   }
 
