@@ -13,19 +13,6 @@ namespace {
 
 using source = rosin::gaussian_source;
 
-double evenly_in_log(source& s, double low, double high) { return low * std::pow(high / low, s.uniform()); }
-double with_sign(source& s, double x) { return s.uniform() < 0.5 ? -x : x; }
-std::size_t side(source& s) { return s.uniform() < 0.5 ? 0 : 1; }
-const char* name_of_side(std::size_t c) { return c == 0 ? "near" : "far"; }
-
-/// Anywhere but where the bow is and the very ends.
-double place(source& s, const challenge_rig& r) {
-  for (;;) {
-    const double x = s.uniform(0.08, 0.92);
-    if (std::abs(x - r.base.position) > 0.04) return x;
-  }
-}
-
 hidden_effect on_the_string(const std::string& name, challenge_rig& r, source& s, double k) {
   const double z = r.base.rig.string.impedance_Ns_m();
   if (name == "bending-stiffness") {
@@ -142,40 +129,14 @@ void draw_other_string(challenge_rig& r, source& s) {
   r.base.law = rosin::velocity_curve<rosin::two_exponential_curve<double>>{r.base.steady_friction};
 }
 
-/// Under an end, a string of another pitch: weights as behind a stiff support. On request only, as below.
-hidden_effect another_string(const std::string& name, challenge_rig& r, source& s, double k) {
-  constexpr double highest_Hz = 60e3;
-  const std::size_t e = side(s);
-  const double pitch = evenly_in_log(s, 0.35, 0.9) * r.base.rig.string.fundamental_Hz, q = evenly_in_log(s, 500, 1500), stiff = evenly_in_log(s, 1e-5, 6e-5), per_mass = k * evenly_in_log(s, 0.02, 0.06);
-  for (int n = 1; n * pitch < highest_Hz; ++n) r.burden.ends[e].modes.push_back({n * pitch * std::sqrt((1 + stiff * n * n) / (1 + stiff)), q, per_mass * n * n});
-  return {name, name_of_side(e), "", {{"frequency_Hz", pitch}, {"q", q}}};
-}
-
-/// Beside the string, where it swings over to: only the strongest pluck gets there. On request only: what a seed has always drawn it still draws.
-hidden_effect beside_the_string(const std::string& name, challenge_rig& r, source& s, double k) {
-  const double x = place(s, r), p = r.base.position, per_newton = std::min(p, 1 - x) * (1 - std::max(p, 1 - x)) * r.base.rig.string.length_m / r.base.rig.string.tension_N;
-  std::array<double, 3> force{};
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] = r.base.plucks[i].force_N;
-  std::sort(force.begin(), force.end());
-  const double gap = -per_newton * (force[2] - k * s.uniform(0.1, 0.4) * (force[2] - force[1]));
-  r.burden.stop = {x, gap, 3e5};
-  return {name, "", "", {{"position", x}, {"gap_m", -gap}}};
-}
-
 void hide(const std::string& name, challenge_rig& r, source& s, double k) {
-  if (name == "sympathetic-string") return r.effects.push_back(another_string(name, r, s, k));
-  if (name == "rattle") return r.effects.push_back(beside_the_string(name, r, s, k));
+  if (auto further = hidden_on_request(name, r, s, k)) return r.effects.push_back(*std::move(further));
   const auto& all = hideable();
   const auto index = std::find(all.begin(), all.end(), name) - all.begin();
   r.effects.push_back(index < 7 ? on_the_string(name, r, s, k) : index < 13 ? in_the_sensors(name, r, s, k) : under_the_bow(name, r, s, k));
 }
 
 }  // namespace
-
-const std::vector<std::string>& hideable_on_request() {
-  static const std::vector<std::string> names{"rattle", "sympathetic-string"};
-  return names;
-}
 
 const std::vector<std::string>& hideable() {
   static const std::vector<std::string> names{

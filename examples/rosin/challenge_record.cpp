@@ -40,7 +40,7 @@ public:
 
   [[nodiscard]] played pluck(std::size_t i) const {
     const auto& base = rig_.base.plucks[i];
-    const rosin::burdened_pluck wire{base.position, base.force_N, base.release_s + lead_s_, rig_.release_duration_s};
+    const rosin::burdened_pluck wire{base.position, base.force_N, base.release_s + lead_s_, rig_.release_duration_s, rig_.pluck_width_m};
     const auto run = [&](const rosin::modal_rig& string, double share) {
       auto one = wire;
       one.force_N *= share;
@@ -61,7 +61,7 @@ public:
     const auto run = [&](const auto& law) {
       return rosin::step_stroke(rig_.bowed, rig_.burden, law, motion, rig_.rod, rig_.base.position, rig_.contact_width_m, rig_.base.stroke_s + 2 * lead_s_, limit_Hz, step_);
     };
-    auto steps = rig_.bristles_N_m > 0 ? run(bristles(i)) : std::visit(run, rig_.base.law);
+    auto steps = rig_.bristles_N_m > 0 ? run(bristles(i)) : rig_.creeps ? run(rosin::creep{rig_.base.steady_friction, *rig_.creeps}) : std::visit(run, rig_.base.law);
     if (rig_.detuning != 0) mix(steps, {});
     return finish("bow-" + std::to_string(i + 1), std::move(steps));
   }
@@ -78,7 +78,7 @@ private:
         along.end_N[e][n] = std::cos(rig_.sensor_angle_rad) * along.end_N[e][n] + (across.end_N[e].empty() ? 0 : std::sin(rig_.sensor_angle_rad) * across.end_N[e][n]);
   }
   [[nodiscard]] played finish(std::string name, rosin::burdened_steps steps) const {
-    rosin::disturb(steps.end_N, rig_.faults, step_);
+    rosin::disturb(steps.end_N, rig_.faults, step_, lead_s_);
     return {std::move(name), {decimate_.points(steps.end_N[0]), decimate_.points(steps.end_N[1])}};
   }
 
@@ -141,6 +141,8 @@ std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const fs
       auto& column = out.channels.emplace_back(codes.size());
       for (std::size_t n = 0; n < column.size(); ++n) column[n] = codes.share(n);
     }
+    if (const auto& [pluck, first, count] = rig.lost; count > 0 && take.name == "pluck-" + std::to_string(pluck + 1))
+      for (auto& column : out.channels) column.erase(column.begin() + static_cast<std::ptrdiff_t>(first), column.begin() + static_cast<std::ptrdiff_t>(first + count));
     if (auto why = rosin::write_audio((folder / (take.name + ".wav")).string(), out, existing)) return why;
   }
   const auto text = rig_text(rig, full_scale);

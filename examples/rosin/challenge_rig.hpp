@@ -6,12 +6,15 @@
 
 #include "provenance.hpp"
 
+#include <rosin/friction/creep.hpp>
 #include <rosin/simulate/burdened_sensors.hpp>
 #include <rosin/simulate/burdened_take.hpp>
 #include <rosin/simulate/random_rig.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +27,11 @@ struct hidden_effect {
   std::map<std::string, double> parameters;
 };
 
+/// Samples that a recorder loses from all channels of one take.
+struct lost_samples {
+  std::size_t pluck = 0, first = 0, count = 0;
+};
+
 struct challenge_rig {
   std::string name;
   rosin::random_rig base;  ///< string, notebook, gains, plain takes
@@ -33,10 +41,12 @@ struct challenge_rig {
   rosin::sensor_faults faults;
   rosin::yielding_rod rod;
   std::array<rosin::converter, 2> converters;
-  double release_duration_s = 0, contact_width_m = 0;
+  double release_duration_s = 0, pluck_width_m = 0, contact_width_m = 0;
   double detuning = 0, pluck_angle_rad = 0, sensor_angle_rad = 0;
   double ripple_Hz = 0, speed_ripple = 0, force_ripple = 0;
   double bristles_N_m = 0;  ///< elasto-plastic friction
+  std::optional<rosin::creep_parameters<double>> creeps;
+  lost_samples lost;
   bool declares_stiffness = true, declares_torsion = true;
 };
 
@@ -48,10 +58,25 @@ struct challenge_choice {
   std::string only;          ///< this effect and no other
 };
 
+inline double evenly_in_log(rosin::gaussian_source& s, double low, double high) { return low * std::pow(high / low, s.uniform()); }
+inline double with_sign(rosin::gaussian_source& s, double x) { return s.uniform() < 0.5 ? -x : x; }
+inline std::size_t side(rosin::gaussian_source& s) { return s.uniform() < 0.5 ? 0 : 1; }
+inline const char* name_of_side(std::size_t c) { return c == 0 ? "near" : "far"; }
+
+/// Anywhere but where the bow is and the very ends.
+inline double place(rosin::gaussian_source& s, const challenge_rig& r) {
+  for (;;) {
+    const double x = s.uniform(0.08, 0.92);
+    if (std::abs(x - r.base.position) > 0.04) return x;
+  }
+}
+
 /// Names that can be hidden, in the order of the catalogue.
 [[nodiscard]] const std::vector<std::string>& hideable();
 /// And these, where they are asked for.
 [[nodiscard]] const std::vector<std::string>& hideable_on_request();
+/// One of these, hidden; nothing if it is none.
+[[nodiscard]] std::optional<hidden_effect> hidden_on_request(const std::string& name, challenge_rig& rig, rosin::gaussian_source& source, double strength);
 [[nodiscard]] challenge_rig draw_challenge(const challenge_choice& choice);
 /// Plays all takes and writes folder/rig.toml with its recordings; a reason if that cannot be done.
 [[nodiscard]] std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const std::filesystem::path& folder, bool force);

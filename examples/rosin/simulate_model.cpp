@@ -97,6 +97,9 @@ const std::map<std::string, put>& can_be_put() {
        [](effect, get p, plan to) {
          for (auto& take : to.takes) take.pluck.release_duration_s = p("duration_s");
        }},
+      {"finite-pluck-width", [](effect, get p, plan to) { to.burden.pluck_width_m = p("width_m"); }},
+      {"phantom-partials", [](effect e, get p, plan to) { to.burden.string.sensed_stiffness_N[p.side(e.channel)] = p("sensed_axial_stiffness_N"); }},
+      {"clock-drift", [](effect, get p, plan to) { to.burden.sensors.clock_drift = p("relative"); }},
       {"torsion", [](effect, get p, plan to) { to.rig.torsion = {p("speed_ratio"), p("impedance_ratio"), p("q")}; }},
       {"tension-drift", [](effect, get p, plan to) { to.tension_drift = p("relative"); }},
       {"rod-resonance", [](effect, get p, plan to) { to.burden.rod = {p("mass_kg"), p("frequency_Hz"), p("q")}; }},

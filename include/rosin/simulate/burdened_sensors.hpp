@@ -3,10 +3,10 @@
 //
 // What faulty sensors make of the forces on the two ends, step by step, before a converter samples them:
 //
-//     quadratic share -> the sensor's own resonance -> leakage between the channels -> the far channel comes late
+//     quadratic share -> the sensor's own resonance -> leakage between the channels -> the far channel comes late, or has a clock of its own
 //
-// The resonance w0^2 / (s^2 + s w0/q + w0^2) is stepped exactly for a force that is straight within a step; the delay is a
-// cubic through four steps. Gain, AC coupling, hum, noise and rounding are the converter's (converter.hpp).
+// The resonance w0^2 / (s^2 + s w0/q + w0^2) is stepped exactly for a force that is straight within a step; what comes late is read
+// from a cubic through four steps. Gain, AC coupling, hum, noise and rounding are the converter's (converter.hpp).
 //
 #pragma once
 
@@ -22,6 +22,7 @@ struct sensor_faults {
   std::array<double, 2> quadratic_per_N{}, resonance_Hz{}, resonance_q{10, 10};  ///< near, far; resonance 0: none
   double crosstalk = 0;  ///< share of each channel in the other
   double skew_s = 0;     ///< the far channel comes late by this
+  double clock_drift = 0;  ///< its clock is fast by this, relative
 };
 
 namespace detail {
@@ -33,14 +34,12 @@ inline void ring_along(std::vector<double>& x, double frequency_Hz, double q, do
   for (double& sample : x) sample = sensor.advance(sample).displacement;
 }
 
-/// x(t - delay), |delay| below the record's length; the ends are held.
-[[nodiscard]] inline std::vector<double> later(const std::vector<double>& x, double delay_steps) {
+/// x at n slope + offset, n = 0, 1, ...; the ends are held.
+[[nodiscard]] inline std::vector<double> read_along(const std::vector<double>& x, double slope, double offset) {
   std::vector<double> out(x.size());
-  const double whole = std::floor(-delay_steps);
-  const double u = -delay_steps - whole;
   const auto at = [&](double n) { return x[static_cast<std::size_t>(std::clamp(n, 0.0, static_cast<double>(x.size() - 1)))]; };
   for (std::size_t n = 0; n < x.size(); ++n) {
-    const double i = static_cast<double>(n) + whole, a = at(i - 1), b = at(i), c = at(i + 1), d = at(i + 2);
+    const double place = static_cast<double>(n) * slope + offset, i = std::floor(place), u = place - i, a = at(i - 1), b = at(i), c = at(i + 1), d = at(i + 2);
     out[n] = -u * (u - 1) * (u - 2) / 6 * a + (u + 1) * (u - 1) * (u - 2) / 2 * b - (u + 1) * u * (u - 2) / 2 * c + (u + 1) * u * (u - 1) / 6 * d;
   }
   return out;
@@ -48,7 +47,8 @@ inline void ring_along(std::vector<double>& x, double frequency_Hz, double q, do
 
 }  // namespace detail
 
-inline void disturb(std::array<std::vector<double>, 2>& end_N, const sensor_faults& faults, double step_s) {
+/// begin_s: where the take begins, and both clocks show the same.
+inline void disturb(std::array<std::vector<double>, 2>& end_N, const sensor_faults& faults, double step_s, double begin_s = 0) {
   for (std::size_t c = 0; c < 2; ++c) {
     if (const double a = faults.quadratic_per_N[c]; a != 0)
       for (double& f : end_N[c]) f += a * f * f;
@@ -60,7 +60,8 @@ inline void disturb(std::array<std::vector<double>, 2>& end_N, const sensor_faul
       end_N[0][n] += faults.crosstalk * end_N[1][n];
       end_N[1][n] += faults.crosstalk * near;
     }
-  if (faults.skew_s != 0) end_N[1] = detail::later(end_N[1], faults.skew_s / step_s);
+  if (faults.skew_s != 0) end_N[1] = detail::read_along(end_N[1], 1, -faults.skew_s / step_s);
+  if (const double slope = 1 / (1 + faults.clock_drift); slope != 1) end_N[1] = detail::read_along(end_N[1], slope, (1 - slope) * begin_s / step_s);
 }
 
 }  // namespace rosin

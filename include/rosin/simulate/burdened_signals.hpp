@@ -20,15 +20,17 @@ struct rig_burden {
   string_burden string{};
   sensor_faults sensors{};
   yielding_rod rod{};
-  double contact_width_m = 0;
+  double pluck_width_m = 0, contact_width_m = 0;
   double detuning = 0, coupling = 0;  ///< of the second plane; plucks only
 
   /// An ideal rig: nothing of all this.
   [[nodiscard]] bool none() const noexcept {
-    const auto& [loads, supports, ends, axial, stop] = string;
+    const auto& [loads, supports, ends, axial, sensed, stop] = string;
     const auto& s = sensors;
-    bool any = !loads.empty() || axial != 0 || stop.stiffness_N_m > 0 || rod.mass_kg > 0 || contact_width_m > 0 || coupling != 0 || s.crosstalk != 0 || s.skew_s != 0;
-    for (std::size_t e = 0; e < 2; ++e) any = any || supports[e].mass_kg > 0 || !ends[e].modes.empty() || s.quadratic_per_N[e] != 0 || s.resonance_Hz[e] > 0;
+    bool any = !loads.empty() || axial != 0 || stop.stiffness_N_m > 0 || rod.mass_kg > 0 || pluck_width_m > 0 || contact_width_m > 0 || coupling != 0 || s.crosstalk != 0 ||
+               s.skew_s != 0 || s.clock_drift != 0;
+    for (std::size_t e = 0; e < 2; ++e)
+      any = any || supports[e].mass_kg > 0 || !ends[e].modes.empty() || sensed[e] != 0 || s.quadratic_per_N[e] != 0 || s.resonance_Hz[e] > 0;
     return !any;
   }
 };
@@ -45,8 +47,10 @@ namespace detail {
     for (const auto& m : end.modes)
       if (!(m.frequency_Hz > 0 && m.q > 0 && m.per_mass_per_s >= 0)) return "termination: frequency and Q must be above 0, and no mass negative";
   if (b.string.stop.stiffness_N_m > 0 && !(b.string.stop.position > 0 && b.string.stop.position < 1)) return "obstacle: its position must lie between 0 and 1";
-  const double half = b.contact_width_m / rig.string.length_m / 2;
-  if (!(b.contact_width_m >= 0 && half < position && half < 1 - position)) return "contact: wider than the string has room for";
+  for (const auto& [width_m, what] : {std::pair{b.contact_width_m, "contact"}, {b.pluck_width_m, "wire"}})
+    if (const double half = width_m / rig.string.length_m / 2; !(width_m >= 0 && half < position && half < 1 - position))
+      return std::string{what} + ": wider than the string has room for";
+  if (!(std::abs(b.sensors.clock_drift) <= 0.01)) return "clock: 0.01 off at most";
   return {};
 }
 
@@ -101,7 +105,7 @@ inline void add_plane(burdened_steps& along, const burdened_steps& across, doubl
   const detail::burdened_steps_of_take how{settings, pluck.duration_s};
   // A sudden release falls on a step; how much later it was meant to be, the whole take is.
   const double meant = (pluck.release_s + how.lead_s) / how.step_s, stepped = pluck.release_duration_s > 0 ? meant : std::round(meant);
-  const burdened_pluck wire{pluck.position, pluck.force_N, stepped * how.step_s, pluck.release_duration_s};
+  const burdened_pluck wire{pluck.position, pluck.force_N, stepped * how.step_s, pluck.release_duration_s, burden.pluck_width_m};
   auto steps = step_pluck(rig, burden.string, wire, how.duration_s(), how.limit_Hz, how.step_s);
   if (burden.coupling != 0) {
     auto other = rig;
@@ -110,8 +114,8 @@ inline void add_plane(burdened_steps& along, const burdened_steps& across, doubl
     detail::add_plane(steps, step_pluck(other, burden.string, wire, how.duration_s(), how.limit_Hz, how.step_s), burden.coupling);
   }
   if (meant != stepped)
-    for (auto* signal : {&steps.end_N[0], &steps.end_N[1], &steps.force_N, &steps.centre_m_s}) *signal = detail::later(*signal, meant - stepped);
-  disturb(steps.end_N, burden.sensors, how.step_s);
+    for (auto* signal : {&steps.end_N[0], &steps.end_N[1], &steps.force_N, &steps.centre_m_s}) *signal = detail::read_along(*signal, 1, stepped - meant);
+  disturb(steps.end_N, burden.sensors, how.step_s, how.lead_s);
   return how.sampled(steps, settings.sample_rate_Hz);
 }
 
@@ -125,7 +129,7 @@ template <FrictionLaw Law, RodMotion Motion>
   const detail::burdened_steps_of_take how{settings, stroke.duration_s};
   auto steps = step_stroke(rig, burden.string, law, motion, burden.rod, stroke.position, burden.contact_width_m, how.duration_s(), how.limit_Hz, how.step_s,
                            how.decimate.reach());
-  disturb(steps.end_N, burden.sensors, how.step_s);
+  disturb(steps.end_N, burden.sensors, how.step_s, how.lead_s);
   return how.sampled(steps, settings.sample_rate_Hz);
 }
 

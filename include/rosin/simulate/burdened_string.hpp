@@ -45,6 +45,7 @@ struct string_burden {
   std::array<yielding_support, 2> supports{};  ///< near, far
   std::array<modal_termination, 2> ends{};     ///< the same as terminations are declared: any number of modes, masses against the string's Z
   double axial_stiffness_N = 0;                ///< E A; 0: the tension is steady
+  std::array<double, 2> sensed_stiffness_N{};  ///< what near and far sensor read per unit of the string's strain
   obstacle stop{};                             ///< in the way of plucks
 };
 
@@ -53,7 +54,7 @@ public:
   /// Forces may act on the string at `contacts` (distance from the near end / length).
   burdened_string(const modal_rig& rig, const string_burden& burden, const std::vector<double>& contacts, double mode_limit_Hz, double step_s)
       : stretch_{rig.string.tension_N / rig.string.length_m}, step_{step_s}, contacts_{static_cast<int>(contacts.size())},
-        bank_{rig, burden.axial_stiffness_N, mode_limit_Hz, step_s}, positions_{contacts} {
+        bank_{rig, burden.axial_stiffness_N, mode_limit_Hz, step_s}, positions_{contacts}, sensed_N_{burden.sensed_stiffness_N[0], burden.sensed_stiffness_N[1]} {
     for (const auto& load : burden.loads) loads_.push_back({load}), positions_.push_back(load.position);
     for (int e = 0; e < 2; ++e) add_end(burden, e, rig.string.impedance_Ns_m());
     set_ports(rig);
@@ -117,6 +118,7 @@ public:
     Eigen::Vector2d u = Eigen::Vector2d::Zero();
     for (const auto& m : ends_) u[m.side] = m.sum(&moving_mode::u);
     out.end_N += stretch_ * Eigen::Vector2d{u[1] - u[0], u[0] - u[1]};
+    if (!sensed_N_.isZero()) out.end_N += sensed_N_ * bank_.strain();
     for (int i = 0; i < contacts_; ++i) out.twist_m_s[i] = bank_.twist(i, all);
     bank_.advance(all);
     last_ = all.head(points());
@@ -279,7 +281,7 @@ private:
   std::vector<moving_support> ends_;
   Eigen::MatrixXd mobility_, end_gain_, rest_end_, solve_, across_, drive_, contact_mobility_;
   Eigen::VectorXd rest_, rest_twist_, free_, last_, answer_;
-  Eigen::Vector2d free_end_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d free_end_ = Eigen::Vector2d::Zero(), sensed_N_;
 };
 
 }  // namespace rosin

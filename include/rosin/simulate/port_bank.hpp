@@ -78,6 +78,8 @@ public:
     const auto turning = size() - transverse_;
     return (shape_.col(port).tail(turning).array() * (re_.tail(turning) + once_re_.tail(turning) * (shape_.bottomRows(turning) * force).array())).sum();
   }
+  /// Of the string as it stands, mean: sum k_n^2 q_n^2 / 4.
+  [[nodiscard]] double strain() const { return (k_ * (q_re_ * re_ + q_im_ * im_)).square().sum() / 4; }
   void advance(const Eigen::VectorXd& force) {
     drive_.matrix().noalias() = shape_ * force;
     if (axial_ > 0) {

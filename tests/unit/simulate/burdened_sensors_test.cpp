@@ -46,3 +46,16 @@ TEST_CASE("skew delays the far channel, crosstalk mixes, the quadratic share ben
   CHECK(std::abs(amplitude(x[1], 2 * f)) == doctest::Approx(0.05));
   CHECK(std::abs(amplitude(x[0], 2 * f)) < 1e-9);
 }
+
+TEST_CASE("a fast clock reads later moments too early, counted from where the take begins") {
+  const double f = 9000, fast = 5e-5, begin_s = 0.002;
+  std::array<std::vector<double>, 2> x{tone(f), tone(f)};
+  rosin::disturb(x, {.clock_drift = fast}, step_s, begin_s);
+  double worst = 0;
+  for (std::size_t i = 10; i + 10 < x[1].size(); ++i) {
+    const double t = static_cast<double>(i) * step_s;
+    worst = std::max(worst, std::abs(x[1][i] - std::cos(2 * pi * f * (begin_s + (t - begin_s) / (1 + fast)))));
+  }
+  CHECK(worst < 1e-6);
+  CHECK(x[0] == tone(f));
+}

@@ -116,4 +116,8 @@ TEST_CASE("what cannot be is refused") {
   says(b, "support");
   b = {}, b.contact_width_m = 0.5;
   says(b, "wider");
+  b = {}, b.pluck_width_m = 0.5;
+  says(b, "wire: wider");
+  b = {}, b.sensors.clock_drift = 0.02;
+  says(b, "clock");
 }

@@ -34,6 +34,40 @@ TEST_CASE("a pluck of a string without a burden is that of the closed form") {
   }
 }
 
+TEST_CASE("a wire of some width plucks as many narrow ones beside each other do") {
+  constexpr double width_m = 0.004, duration_s = 0.006;
+  const rosin::burdened_pluck narrow{.position = 0.3, .force_N = 1, .release_s = 0.001};
+  auto wide = narrow;
+  wide.width_m = width_m;
+  const auto steps = rosin::step_pluck(rig, {}, wide, duration_s, 150e3, step_s);
+  constexpr int wires = 24;
+  std::vector<double> sum(steps.end_N[0].size());
+  for (int i = 0; i < wires; ++i) {
+    auto one = narrow;
+    one.position += width_m / rig.string.length_m * ((i + 0.5) / wires - 0.5);
+    const auto of_one = rosin::step_pluck(rig, {}, one, duration_s, 150e3, step_s);
+    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += of_one.end_N[0][n] / wires;
+  }
+  CHECK(apart(steps.end_N[0], sum, 0, sum.size()) < 2e-3);  // all frequencies alike
+  CHECK(apart(rosin::step_pluck(rig, {}, narrow, duration_s, 150e3, step_s).end_N[0], sum, 0, sum.size()) > 0.015);
+}
+
+TEST_CASE("a transducer that feels the tension reads the string's strain besides") {
+  const rosin::burdened_pluck pluck{.position = 0.3, .force_N = 1, .release_s = 0.001};
+  const auto plain = rosin::step_pluck(rig, {}, pluck, 0.006, 60e3, step_s), felt = rosin::step_pluck(rig, {.sensed_stiffness_N = {0, -2000}}, pluck, 0.006, 60e3, step_s);
+  CHECK(felt.end_N[0] == plain.end_N[0]);
+  const double held = std::pow(1 / rig.string.tension_N, 2) * 0.3 * 0.7 / 2;
+  CHECK(felt.end_N[1][100] - plain.end_N[1][100] == doctest::Approx(-2000 * held).epsilon(0.02));
+  double most = -1e9, least = 1e9;  // it sways twice a period, never below nothing
+  for (std::size_t n = 4000; n < felt.end_N[1].size(); ++n) {
+    const double strain = (felt.end_N[1][n] - plain.end_N[1][n]) / -2000;
+    most = std::max(most, strain), least = std::min(least, strain);
+  }
+  CHECK(least > 0);
+  CHECK(most < held);
+  CHECK(most > 0.8 * held);
+}
+
 TEST_CASE("a stroke is that of modal_stroke; a contact of no width is one of very little; a heavy rod does not yield") {
   const rosin::velocity_curve<rosin::two_exponential_curve<double>> law{{0.38, 0.02, 0.42, 0.14, 0.35}};
   const rosin::steady_rod motion{.speed_m_s = 0.2, .normal_force_N = 0.3};

@@ -54,6 +54,17 @@ TEST_CASE("at rest under a force it stays at rest, and the tension that its defl
   }
 }
 
+TEST_CASE("strain of a string that is held in a triangle") {
+  constexpr double force = 2, place = 0.4;
+  auto soft = rig;
+  soft.string.bending_stiffness_Nm2 = 0;
+  rosin::port_bank bank{soft, 0, 250e3, step_s};
+  bank.set_ports(bank.at(place, false));
+  bank.rest_under(Eigen::VectorXd::Constant(1, force));
+  bank.advance(Eigen::VectorXd::Constant(1, force));
+  CHECK(bank.strain() == doctest::Approx(std::pow(force / soft.string.tension_N, 2) * place * (1 - place) / 2).epsilon(3e-3));
+}
+
 TEST_CASE("a free string keeps to the pitch that its mean tension gives") {
   // Duffing: a mode of amplitude a sounds higher by (3/8) (E A / (4 T)) k^2 a^2.
   auto one = rig;

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+//
+// What is hidden on request only: what a seed has always drawn it still draws.
+//
+#include "challenge_rig.hpp"
+
+#include <algorithm>
+#include <functional>
+
+namespace tool {
+
+namespace {
+
+using source = rosin::gaussian_source;
+
+/// Under an end, a string of another pitch: weights as behind a stiff support.
+hidden_effect another_string(challenge_rig& r, source& s, double k) {
+  constexpr double highest_Hz = 60e3;
+  const std::size_t e = side(s);
+  const double pitch = evenly_in_log(s, 0.35, 0.9) * r.base.rig.string.fundamental_Hz, q = evenly_in_log(s, 500, 1500), stiff = evenly_in_log(s, 1e-5, 6e-5), per_mass = k * evenly_in_log(s, 0.02, 0.06);
+  for (int n = 1; n * pitch < highest_Hz; ++n) r.burden.ends[e].modes.push_back({n * pitch * std::sqrt((1 + stiff * n * n) / (1 + stiff)), q, per_mass * n * n});
+  return {{}, name_of_side(e), "", {{"frequency_Hz", pitch}, {"q", q}}};
+}
+
+/// Beside the string, where it swings over to: only the strongest pluck gets there.
+hidden_effect beside_the_string(challenge_rig& r, source& s, double k) {
+  const double x = place(s, r), p = r.base.position, per_newton = std::min(p, 1 - x) * (1 - std::max(p, 1 - x)) * r.base.rig.string.length_m / r.base.rig.string.tension_N;
+  std::array<double, 3> force{};
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] = r.base.plucks[i].force_N;
+  std::sort(force.begin(), force.end());
+  const double gap = -per_newton * (force[2] - k * s.uniform(0.1, 0.4) * (force[2] - force[1]));
+  r.burden.stop = {x, gap, 3e5};
+  return {{}, "", "", {{"position", x}, {"gap_m", -gap}}};
+}
+
+/// Of the air's boundary layer.
+hidden_effect in_air(challenge_rig& r, source& s, double k) {
+  const double loss = k * evenly_in_log(s, 2e-3, 1e-2);
+  r.base.rig.string.loss.air_sqrt_Hz = r.bowed.string.loss.air_sqrt_Hz = loss;
+  return {{}, "", "", {{"loss_air_sqrt_Hz", loss}}};
+}
+
+hidden_effect wide_wire(challenge_rig& r, source& s, double k) {
+  r.pluck_width_m = std::sqrt(k) * evenly_in_log(s, 1e-3, 5e-3);
+  return {{}, "", "", {{"width_m", r.pluck_width_m}}};
+}
+
+/// One pluck is made where nobody meant it to be.
+hidden_effect plucked_elsewhere(challenge_rig& r, source& s, double k) {
+  auto& pluck = r.base.plucks[std::min<std::size_t>(2, static_cast<std::size_t>(3 * s.uniform()))];
+  const double by = k * s.uniform(0.03, 0.07);
+  pluck.position += pluck.position > 0.25 ? -by : by;
+  return {{}, "", "", {{"position", pluck.position}}};
+}
+
+/// A transducer that is not square to the string reads a share of its tension.
+hidden_effect felt_tension(challenge_rig& r, source& s, double k) {
+  const std::size_t c = side(s);
+  r.burden.sensed_stiffness_N[c] = k * with_sign(s, evenly_in_log(s, 300, 3000));
+  return {{}, "", name_of_side(c), {{"sensed_axial_stiffness_N", r.burden.sensed_stiffness_N[c]}}};
+}
+
+hidden_effect two_clocks(challenge_rig& r, source& s, double k) {
+  r.faults.clock_drift = k * with_sign(s, evenly_in_log(s, 5e-6, 1e-4));
+  return {{}, "", "", {{"relative", r.faults.clock_drift}}};
+}
+
+hidden_effect cut_out(challenge_rig& r, source& s, double) {
+  r.lost = {std::min<std::size_t>(2, static_cast<std::size_t>(3 * s.uniform())), static_cast<std::size_t>(128000 * s.uniform(0.03, 0.08)), static_cast<std::size_t>(evenly_in_log(s, 3, 60))};
+  return {{}, "", "", {{"samples", static_cast<double>(r.lost.count)}, {"time_s", static_cast<double>(r.lost.first) / 128000}}};
+}
+
+hidden_effect creeping(challenge_rig& r, source& s, double k) {
+  r.creeps = {k * evenly_in_log(s, 2e-3, 1e-2), s.uniform(0.04, 0.12)};
+  return {{}, "", "", {{"limit_speed_m_s", r.creeps->limit_speed_m_s}, {"sharpness", r.creeps->sharpness}}};
+}
+
+const std::map<std::string, std::function<hidden_effect(challenge_rig&, source&, double)>>& requests() {
+  static const std::map<std::string, std::function<hidden_effect(challenge_rig&, source&, double)>> all{
+      {"air-loss", in_air},          {"clock-drift", two_clocks},  {"creep", creeping},          {"dropouts", cut_out}, {"finite-pluck-width", wide_wire},
+      {"phantom-partials", felt_tension}, {"pluck-position", plucked_elsewhere}, {"rattle", beside_the_string}, {"sympathetic-string", another_string}};
+  return all;
+}
+
+}  // namespace
+
+const std::vector<std::string>& hideable_on_request() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const auto& [name, hide] : requests()) out.push_back(name);
+    return out;
+  }();
+  return names;
+}
+
+std::optional<hidden_effect> hidden_on_request(const std::string& name, challenge_rig& rig, source& from, double strength) {
+  const auto found = requests().find(name);
+  if (found == requests().end()) return std::nullopt;
+  auto out = found->second(rig, from, strength);
+  out.name = name;
+  return out;
+}
+
+}  // namespace tool
