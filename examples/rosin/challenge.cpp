@@ -137,7 +137,7 @@ void add_challenge(CLI::App& app, exit_code& result) {
   command->add_option("--seed", given->seed, "Of the first rig")->check(CLI::NonNegativeNumber)->capture_default_str();
   command->add_option("--count", given->count, "Rigs to make; 0: only what the folder holds")->check(CLI::NonNegativeNumber)->capture_default_str();
   command->add_option("--effects", given->effects, "Hidden in each rig")->check(CLI::Range(0, 2))->capture_default_str();
-  command->add_option("--effect", given->effect, "This one and no other; besides those that are drawn: rattle, sympathetic-string")->type_name("NAME");
+  command->add_option("--effect", given->effect, "This one and no other; besides those that are drawn: " + CLI::detail::join(hideable_on_request(), ", "))->type_name("NAME");
   command->add_option("--strength", given->strength, "1: as in a laboratory in which one thing went wrong")->check(CLI::Range(0.001, 10.0))->capture_default_str();
   command->add_option("--noise-db", given->noise_dB, "Peak of the first pluck over the noise; 0: drawn, 0.3 to 0.5 mN")->check(CLI::Range(0.0, 120.0))->capture_default_str();
   command->add_option("--shard", given->shard, "The K-th of N parts: every N-th rig")->type_name("K/N")->capture_default_str();

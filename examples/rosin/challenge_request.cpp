@@ -71,7 +71,7 @@ hidden_effect cut_out(challenge_rig& r, source& s, double) {
 }
 
 hidden_effect creeping(challenge_rig& r, source& s, double k) {
-  r.creeps = {k * evenly_in_log(s, 2e-3, 1e-2), s.uniform(0.04, 0.12)};
+  r.creeps = {k * evenly_in_log(s, 5e-3, 2e-2), s.uniform(0.15, 0.4)};
   return {{}, "", "", {{"limit_speed_m_s", r.creeps->limit_speed_m_s}, {"sharpness", r.creeps->sharpness}}};
 }
 

@@ -46,9 +46,9 @@ struct plucks_told {
 [[nodiscard]] rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, std::vector<std::string>& warnings,
                                                              const std::vector<std::string>& without = {});
 
-/// A pluck that contradicts the others is what the diagnosis then is about; true if what makes it odd is found. An obstacle is looked for
-/// where the catalogue knows it and the string's impedance is known.
-bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, bool knows_rattle, rig_diagnosis& d);
+/// A pluck that contradicts the others is what the diagnosis then is about; true if what makes it odd is found, and the catalogue knows it
+/// by name. An obstacle is looked for where the string's impedance is known.
+bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const std::function<bool(const char*)>& knows, rig_diagnosis& d);
 /// Samples that the checks found lost in any take; such a take is in no fit.
 void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, provenance& from, rig_diagnosis& d);
 /// Plucks that were made clearly elsewhere than declared.

@@ -58,7 +58,7 @@ std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& p) {
 }
 
 residual_picture residuals_of(const rosin::odd_pluck& odd) {
-  const rosin::take_and_model& t = odd.ringing;
+  const rosin::take_and_model &t = odd.ringing, &after = odd.moved && odd.elsewhere.model[0].size() == t.model[0].size() ? odd.elsewhere : t;
   residual_picture out = picture_of(odd);
   out.stretch = "from a period before it goes astray on", out.bar = "The bar marks where it begins; over the whole take it is";
   const double from_s = std::max(t.begin_s, odd.time_s[0] - 1 / out.fundamental_Hz), lost_s = odd.lost ? odd.lost->time_s : 1e300;
@@ -69,7 +69,7 @@ residual_picture residuals_of(const rosin::odd_pluck& odd) {
     for (Eigen::Index i = begin; i < begin + count; ++i) {
       const bool behind = t.begin_s + static_cast<double>(i) / out.rate_Hz > lost_s;
       out.before.force_N[c].push_back(t.recorded[c][i] - t.model[c][i]);
-      out.after.force_N[c].push_back(t.recorded[c][i] - t.model[c][i + (behind ? lag : 0)]);
+      out.after.force_N[c].push_back(t.recorded[c][i] - after.model[c][i + (behind ? lag : 0)]);
     }
   return out;
 }

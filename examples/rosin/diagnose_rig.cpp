@@ -164,7 +164,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   take_over(p, values, d);
   const auto knows = [&](const char* effect) { return std::find(without.begin(), without.end(), effect) == without.end(); };
   if (p.explained && knows("pluck-position")) name_pluck_position(values, p, d);
-  const bool accounted = !plucks->odd || add_odd(*plucks->odd, values, knows("rattle"), d);
+  const bool accounted = !plucks->odd || add_odd(*plucks->odd, values, knows, d);
   if (p.explained && knows("dropouts")) name_dropouts(rig, p, from, d);
   add_calibration(p, d);
 

@@ -31,6 +31,15 @@ missing_effect lost(const std::string& take, const std::string& channel, double 
   return m;
 }
 
+missing_effect made_at(const std::string& take, double position, double sd, double declared) {
+  missing_effect m;
+  m.effect = "pluck-position", m.position = position;
+  m.parameters = {{"position", position, sd}};
+  m.statement = (take.empty() ? std::string{"The string"} : take + ": the string") + " was plucked at " + rosin::detail::figure(position, "%.4f") + " of its length, not at " +
+                rosin::detail::figure(declared, "%.4f") + ".";
+  return m;
+}
+
 missing_effect met(const rosin::rattle& r, const rosin::rig_values& values) {
   missing_effect m;
   m.effect = "rattle", m.position = r.place.position;
@@ -53,6 +62,7 @@ std::string contradiction(const rosin::odd_pluck& odd) {
   if (odd.lost) return out + figure(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
   const double others_Hz = odd.others.best.value[rosin::pluck_layout::fundamental], apart = odd.own_fundamental_Hz / others_Hz - 1;
   const std::string strongest = odd.strongest ? "; it is the strongest: something that only large motion meets?" : "";
+  if (odd.moved) return out + "it was made elsewhere";
   if (odd.own_fundamental_Hz > 0 && std::abs(apart) > 1e-5)
     return out + "by itself it rings at " + figure(odd.own_fundamental_Hz, "%.6g") + " Hz, the others at " + figure(others_Hz, "%.6g") + " Hz; another tuning or another string?" + strongest;
   return out + "off from " + figure(odd.time_s[0], "%.4f") + " s on" + strongest;
@@ -60,18 +70,18 @@ std::string contradiction(const rosin::odd_pluck& odd) {
 
 }  // namespace
 
-bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, bool knows_rattle, rig_diagnosis& d) {
+bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const std::function<bool(const char*)>& knows, rig_diagnosis& d) {
+  const bool lost_some = odd.lost && knows("dropouts"), moved = odd.moved && knows("pluck-position");
   d.warnings.push_back(contradiction(odd));
   d.take = odd.take.name, d.channel.clear(), d.time_s = odd.time_s, d.band_Hz.reset(), d.position.reset(), d.acts.clear();
-  d.before = odd.before, d.after = odd.lost ? odd.after : odd.before, d.noise_floor = odd.floor;
+  d.before = odd.before, d.after = lost_some || moved ? odd.after : odd.before, d.noise_floor = odd.floor;
   d.residual_over_noise = odd.floor > 0 ? odd.before / odd.floor : 0;
   d.held_out = {odd.take.name};
   d.residual = residuals_of(odd);
-  if (odd.lost) {
-    add_cause(lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s), d);
-    return true;
-  }
-  const auto rattle = knows_rattle && values.impedance_Ns_m ? rosin::find_rattle(odd, values.impedance_Ns_m->value) : std::nullopt;
+  if (lost_some) add_cause(lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s), d);
+  if (moved) add_cause(made_at(odd.take.name, odd.moved->position, odd.moved->sd, odd.take.position), d);
+  if (lost_some || moved) return true;
+  const auto rattle = knows("rattle") && values.impedance_Ns_m ? rosin::find_rattle(odd, values.impedance_Ns_m->value) : std::nullopt;
   if (!rattle) return false;
   d.position = rattle->place.position, d.time_s = {rattle->first_s, rattle->first_s + odd.time_s[1] - odd.time_s[0]};
   d.before = rattle->before, d.after = rattle->after, d.noise_floor = rattle->floor, d.residual_over_noise = rattle->before / rattle->floor;
@@ -107,11 +117,7 @@ void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_dia
     const Eigen::Index at = p.data.layout.position(t);
     const double declared = p.data.takes[t].position, found = p.best.value[at];
     if (!(std::abs(found - declared) > allowed)) continue;
-    missing_effect m;
-    m.effect = "pluck-position", m.position = found;
-    m.parameters = {{"position", found, p.best.sd[at]}};
-    m.statement = "The string was plucked at " + rosin::detail::figure(found, "%.4f") + " of its length, not at " + rosin::detail::figure(declared, "%.4f") + ".";
-    d.missing.push_back(m);
+    d.missing.push_back(made_at({}, found, p.best.sd[at], declared));
     if (!d.take.empty()) return;
     rosin::scene_fit as_declared = p.best;
     as_declared.value[at] = declared;

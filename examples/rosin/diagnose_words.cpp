@@ -16,7 +16,7 @@ std::string figure(double x, const char* form = "%.3g") { return rosin::detail::
 
 /// Relative errors that no recording tells, since they belong to the rig's nominal values.
 struct nominal_errors {
-  double impedance = 0.01, stiffness = 0.012, axial = 0.045, scale = 0.01;
+  double impedance = 0.01, stiffness = 0.012, axial = 0.045, sensed = 0.03, scale = 0.01;
 };
 
 nominal_errors errors_of(const rosin::rig_values& v) {
@@ -24,7 +24,7 @@ nominal_errors errors_of(const rosin::rig_values& v) {
   if (v.impedance_Ns_m) e.impedance = v.impedance_Ns_m->sd / v.impedance_Ns_m->value;
   if (v.tension_N && v.length_m) {
     const double t = v.tension_N->sd / v.tension_N->value, l = v.length_m->sd / v.length_m->value;
-    e.stiffness = std::hypot(t, 2 * l), e.axial = std::hypot(3 * t, 0.02);
+    e.stiffness = std::hypot(t, 2 * l), e.axial = std::hypot(3 * t, 2 * e.scale), e.sensed = std::hypot(2 * t, 2 * e.scale);
   }
   return e;
 }
@@ -48,6 +48,7 @@ diagnosed_value in_si(const std::string& name, double v, double sd, const rosin:
   }
   if (name == "mass_kg" || name == "resistance_Ns_m") return with(name.c_str(), v, sd, e.impedance);
   if (name == "axial_stiffness_N") return with(name.c_str(), v, sd, e.axial);
+  if (name == "sensed_axial_stiffness_N") return with(name.c_str(), v, sd, e.sensed);
   if (name == "gap_m") return with(name.c_str(), v, sd, std::hypot(e.scale, e.impedance));
   if (name == "quadratic_per_N" || name == "amplitude_N") return with(name.c_str(), v, sd, e.scale);
   return {name, v, sd};

@@ -9,6 +9,12 @@ expect 0 validate a/rigs/challenge-700001/rig.toml
 expect 0 challenge --out a --seed 7 --count 2 --effect channel-skew --only-make --shard 2/2
 expect 0 check a/rigs/challenge-700001
 
+# Samples that a recorder loses are missing from one pluck, and from both its channels.
+expect 0 challenge --out lost --seed 7 --count 1 --effect dropouts --only-make
+missing=$(perl -MJSON::PP -e 'local $/; print decode_json(<STDIN>)->{effects}[0]{parameters}{samples}' <lost/truth/challenge-700000.json)
+sizes=$(stat -c %s lost/rigs/*/pluck-*.wav | sort -n | uniq -c | awk '{ printf "%s:%s ", $1, $2 }')
+same "$sizes" "1:$((71724 - 4 * missing)) 2:71724 "
+
 # Diagnoses written by hand: one right, one that names something else; of a rig of which the truth alone is there.
 mkdir -p b/rigs b/truth b/diagnoses
 sed 's/challenge-700001/one/' a/truth/challenge-700001.json >b/truth/one.json

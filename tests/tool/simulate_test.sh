@@ -281,6 +281,9 @@ cat >all.json <<'JSON'
   { "effect": "sensor-nonlinearity", "where": { "channel": "far" }, "parameters": { "quadratic_per_N": { "value": 0.03 } } },
   { "effect": "mains-hum", "parameters": { "frequency_Hz": { "value": 50 }, "amplitude_N": { "value": 0.01 } } },
   { "effect": "slow-release", "parameters": { "duration_s": { "value": 4e-5 } } },
+  { "effect": "finite-pluck-width", "parameters": { "width_m": { "value": 0.003 } } },
+  { "effect": "phantom-partials", "where": { "channel": "near" }, "parameters": { "sensed_axial_stiffness_N": { "value": 1000 } } },
+  { "effect": "clock-drift", "parameters": { "relative": { "value": 2e-5 } } },
   { "effect": "torsion", "parameters": { "speed_ratio": { "value": 6 }, "impedance_ratio": { "value": 3 }, "q": { "value": 15 } } },
   { "effect": "tension-drift", "parameters": { "relative": { "value": 0.01 } } },
   { "effect": "rod-resonance", "parameters": { "frequency_Hz": { "value": 1500 }, "q": { "value": 10 }, "mass_kg": { "value": 0.003 } } },
@@ -290,7 +293,7 @@ cat >all.json <<'JSON'
 JSON
 expect 0 simulate plain.toml --model all.json --out all
 says "with: elasto-plastic-friction" 'all.json: its verdict is "unexplained"' "mains-hum: a diagnosis tells neither phase" "speed-ripple: a diagnosis tells no phase"
-same "$(grep -c '^with: ' out.txt)" 21
+same "$(grep -c '^with: ' out.txt)" 24
 same "$(key all-truth/truth.json bristle_stiffness_N_m)" 20000.0
 same "$(key all-truth/truth.json speed_ratio)" 6.0
 expect 0 check all

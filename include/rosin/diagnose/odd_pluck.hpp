@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Where plucks leave something unexplained: is it one of them that contradicts the others? Another string, another tuning, an obstacle
-// that only the strongest meets, samples that a recorder lost. Each is left out in turn; if the declared model fits the others far
+// that only the strongest meets, samples that a recorder lost, a place where nobody meant to pluck. Each is left out in turn; if the declared model fits the others far
 // better without one, these are diagnosed by themselves, and if nothing is left unexplained there, that one is the odd one. It is
-// predicted like a take that was held out, and searched for an instant from which on it runs ahead by a whole number of samples.
+// predicted like a take that was held out, and searched for an instant from which on it runs ahead by a whole number of samples, and for
+// another place from which the others' model predicts it.
 //
 #pragma once
 
@@ -18,6 +19,11 @@ struct lost_samples {
   double time_s = 0, sd_s = 0;  ///< of the first that is missing, from the take's beginning
 };
 
+/// Where a pluck was made, against where it was declared to be.
+struct moved_pluck {
+  double position = 0, sd = 0;
+};
+
 /// The part of a take after its release, and what it should be, in the band.
 struct take_and_model {
   std::array<Eigen::VectorXd, 2> recorded, model;
@@ -28,13 +34,15 @@ struct take_and_model {
 struct odd_pluck {
   pluck_take take;
   pluck_diagnosis others;
-  take_and_model ringing;            ///< by release and strength of its first periods
+  take_and_model ringing{};          ///< by release and strength of its first periods
   double own_fundamental_Hz = 0;     ///< of this pluck fitted by itself; 0: it cannot be
   bool strongest = false;
   std::array<double, 2> time_s{};    ///< from when on it is off: a window of half a period
   double before = 0, floor = 0;      ///< rms residual / rms recorded, as the others predict it; the noise's share
-  std::optional<lost_samples> lost;  ///< if that is what is odd
-  double after = 0;                  ///< with the loss
+  std::optional<lost_samples> lost{};  ///< if that is what is odd
+  std::optional<moved_pluck> moved{};  ///< or this
+  take_and_model elsewhere{};        ///< `ringing` from there
+  double after = 0;                  ///< with the loss, or from there
 };
 
 namespace detail {
@@ -92,6 +100,42 @@ inline void search_loss(odd_pluck& odd) {
   odd.after = std::sqrt(found.mean_square * samples / recorded);
 }
 
+/// Another place from which the model of the others predicts the pluck. What a wrong place leaves of the first periods falls steadily
+/// towards the right one; there, of the whole take, it is a parabola.
+inline void search_place(odd_pluck& odd, double clearly_off) {
+  constexpr double ends = 0.02, step = 0.06, near = 1e-3, few_periods = 3;
+  const auto from = [&](double position) {
+    auto take = odd.take;
+    take.position = position;
+    return take;
+  };
+  const auto early = [&](double x) {
+    const auto seen = see(odd.others.data, odd.others.best, from(x), few_periods);
+    return seen ? seen->fit.quality.residual_ratio[0] : 1.0;
+  };
+  const auto whole = [&](double x) { return predicted(odd.others.data, odd.others.best, from(x), rms_of(odd.others.best.quality.noise)); };
+  double best = ends, least = early(best), bend = 0;
+  const auto attempt = [&](double x) {
+    if (const double left = early(x); left < least) least = left, best = x;
+  };
+  for (double x = ends + step; x <= 1 - ends; x += step) attempt(x);
+  for (double reach = step / 2; reach > near; reach /= 2) attempt(best - reach), attempt(best + reach);
+  for (const double h : {near, near / 10}) {
+    const double below = std::pow(whole(best - h)[0], 2), here = std::pow(whole(best)[0], 2), above = std::pow(whole(best + h)[0], 2);
+    bend = (below + above - 2 * here) / (h * h);
+    if (!(bend > 0)) return;
+    best -= std::clamp((above - below) / (2 * h * bend), -2 * h, 2 * h);
+  }
+  const auto [left, floor, samples] = whole(best);
+  if (!(left < 0.15 * odd.before && left < clearly_off * floor)) return;
+  // A place counts from the nearest one that was declared and fitted: as much as that is off, so is this.
+  const auto& data = odd.others.data;
+  const Eigen::Index first = data.layout.position(0);
+  odd.moved = moved_pluck{best + odd.others.best.value[first] - data.takes[0].position, std::hypot(left / std::sqrt(0.5 * samples * bend), odd.others.best.sd[first])};
+  odd.after = left;
+  odd.elsewhere = compare_late(odd.others, from(best));
+}
+
 /// The first half period in which a take is off by a tenth (in amplitude) of the most.
 inline std::array<double, 2> first_off(const take_and_model& t, double fundamental_Hz) {
   const auto window = static_cast<Eigen::Index>(std::max(8.0, 0.5 * t.rate_Hz / fundamental_Hz));
@@ -137,7 +181,7 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
   if (fitted.empty()) std::swap(fitted, kept);
   auto others = diagnose_plucks(fitted, kept, guess, options, catalogue_for);
   if (!others || !others->explained) return std::nullopt;
-  odd_pluck odd{all[which], *std::move(others), {}, 0, true, {}, 0, 0, {}, 0};
+  odd_pluck odd{.take = all[which], .others = *std::move(others), .strongest = true};
   const auto seen = detail::predicted(odd.others.data, odd.others.best, odd.take, detail::rms_of(odd.others.best.quality.noise));
   odd.before = seen[0], odd.floor = seen[1];
   if (!(odd.before > clearly_off * odd.floor)) return std::nullopt;
@@ -146,6 +190,7 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
   odd.ringing = detail::compare_late(odd.others, odd.take);
   if (odd.ringing.rate_Hz > 0) odd.time_s = detail::first_off(odd.ringing, odd.others.best.value[pluck_layout::fundamental]);
   detail::search_loss(odd);
+  if (!odd.lost) detail::search_place(odd, clearly_off);
   return odd;
 }
 

@@ -49,6 +49,22 @@ TEST_CASE("odd pluck: samples that a recorder lost are found, with their number 
   CHECK(odd->others.best.effects.empty());
 }
 
+TEST_CASE("odd pluck: made elsewhere than declared") {
+  three p = sound_plucks();
+  p.takes[1] = test::modal_pluck(0.5, 7, 0, 0.343);
+  p.takes[1].name = "moved";
+  for (auto& channel : p.takes[1].force_N) channel.resize(5000);
+  const auto odd = odd_of(p.takes, p.held);
+  REQUIRE(odd);
+  CHECK(odd->take.name == "moved");
+  CHECK_FALSE(odd->lost);
+  REQUIRE(odd->moved);
+  CHECK(std::abs(odd->moved->position - 0.343) < 4 * odd->moved->sd);
+  CHECK(odd->moved->sd < 1e-3);
+  CHECK(odd->after < 1.1 * odd->floor);
+  CHECK(odd->elsewhere.model[0].size() == odd->ringing.model[0].size());
+}
+
 TEST_CASE("odd pluck: the strongest rings a thousandth higher") {
   three p = sound_plucks();
   for (auto& channel : p.takes[0].force_N) channel = rosin::resampled(channel, 1e-3);
@@ -57,5 +73,6 @@ TEST_CASE("odd pluck: the strongest rings a thousandth higher") {
   CHECK(odd->take.name == "hard");
   CHECK(odd->strongest);
   CHECK_FALSE(odd->lost);
+  CHECK_FALSE(odd->moved);
   CHECK(odd->own_fundamental_Hz / odd->others.best.value[0] - 1 == doctest::Approx(1e-3).epsilon(0.01));
 }

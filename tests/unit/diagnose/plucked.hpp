@@ -17,8 +17,8 @@ inline const rosin::modal_rig plucked_rig{
     .string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 900}}};
 
 /// Recorded by 16-bit converters with 0.3 mN of noise, the far channel late by `skew_s` (a fraction of the partials' phases).
-inline rosin::pluck_take modal_pluck(double force_N, std::uint64_t seed, double release_duration_s = 0) {
-  const auto made = rosin::simulate_pluck(plucked_rig, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.06});
+inline rosin::pluck_take modal_pluck(double force_N, std::uint64_t seed, double release_duration_s = 0, double position = 0.3) {
+  const auto made = rosin::simulate_pluck(plucked_rig, {.position = position, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.06});
   rosin::pluck_take take;
   take.name = "pluck-" + std::to_string(seed);
   take.rate_Hz = made->sample_rate_Hz;
