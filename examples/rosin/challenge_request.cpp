@@ -71,8 +71,9 @@ hidden_effect cut_out(challenge_rig& r, source& s, double) {
 }
 
 hidden_effect creeping(challenge_rig& r, source& s, double k) {
-  r.creeps = {k * evenly_in_log(s, 5e-3, 2e-2), s.uniform(0.15, 0.4)};
-  return {{}, "", "", {{"limit_speed_m_s", r.creeps->limit_speed_m_s}, {"sharpness", r.creeps->sharpness}}};
+  r.creeps = {k * evenly_in_log(s, 1e-2, 4e-2), s.uniform(0.15, 0.4)};
+  const double a = r.creeps->sharpness, limit = r.base.steady_friction(0).value;
+  return {{}, "", "", {{"speed_at_normal_force_m_s", r.creeps->limit_speed_m_s * std::exp((1 - limit) / a)}, {"sharpness", a}}};
 }
 
 const std::map<std::string, std::function<hidden_effect(challenge_rig&, source&, double)>>& requests() {

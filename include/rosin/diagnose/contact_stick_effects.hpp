@@ -210,37 +210,51 @@ struct family_fit {
   return h;
 }
 
-/// It creeps while it sticks, the more the nearer to the limit of friction.
+/// It creeps while it sticks, the faster the nearer to the limit of friction (creep.hpp):  v = -sgn(f) v_N exp((|f|/N - 1) / a),
+/// v_N as fast as it would be under a force as large as the normal force.
 [[nodiscard]] inline contact_hypothesis creep_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes) {
   contact_hypothesis h{.effect = "creep"};
   h.free_parameters = 2;
   const detail::explained quick(bench.declared(), bench.fit().solution);
-  double best = 0, sharp = 0.1;
-  const auto columns = [&](double a) {
-    std::vector<std::vector<double>> out;
-    for (std::size_t t = 0; t < bench.records().size(); ++t) {
-      auto& record = bench.records()[t];
-      const auto& force = record.force_N();
-      std::vector<double> c(force.size());
-      for (std::size_t i = 0; i < c.size(); ++i) c[i] = -std::copysign(std::exp(std::min(4.0, (std::abs(force[i]) / takes[t].normal_force_N - 1) / a)), force[i]);
-      out.push_back(std::move(c));
-    }
+  std::vector<std::vector<double>> force;
+  for (auto& record : bench.records()) force.push_back(record.force_N());
+  const auto columns = [&](double sharp) {
+    auto out = force;
+    for (std::size_t t = 0; t < out.size(); ++t)
+      for (double& f : out[t]) f = -std::copysign(std::exp(std::min(4.0, (std::abs(f) / takes[t].normal_force_N - 1) / sharp)), f);
     return out;
   };
-  for (const double a : {0.03, 0.05, 0.08, 0.13, 0.25, 1.0}) {
+  double best = 0, sharp = 0.1;
+  const auto attempt = [&](double a) {
     double size = 0;
     const double gain = quick.by(columns(a), size);
     if (size > 0 && gain > best) best = gain, sharp = a;
-  }
+  };
+  constexpr double sharpest = 0.02, dullest = 2;
+  for (double a = sharpest; a < dullest; a *= 1.5) attempt(a);
   if (!(best > 0)) return detail::nothing(bench, h);
-  stick_design d = bench.declared();
-  const auto column = columns(sharp);
-  for (std::size_t t = 0; t < d.rows.size(); ++t) d.add_shared(t, column[t]);
-  d.add_bound(0, 1e9);
-  const auto fit = fit_design(d, bench.floor_m_s());
+  for (double reach = 0.2; reach > 2e-3; reach /= 2) {
+    const double middle = sharp;
+    for (const double a : {middle * std::exp(-reach), middle * std::exp(reach)})
+      if (a > sharpest && a < dullest) attempt(a);
+  }
+  const auto fitted = [&](double a) {
+    stick_design d = bench.declared();
+    const auto column = columns(a);
+    for (std::size_t t = 0; t < d.rows.size(); ++t) d.add_shared(t, column[t]);
+    d.add_bound(0, 1e9);
+    return fit_design(d, bench.floor_m_s());
+  };
+  const auto fit = fitted(sharp);
   detail::settle_hypothesis(bench, fit, h);
+  // How sharp it is, is as sure as the gain is bent there; and with it goes the speed.
+  constexpr double apart = 0.05;
+  double below = 0, above = 0;
+  const double bend = (2 * best - quick.by(columns(sharp * std::exp(-apart)), below) - quick.by(columns(sharp * std::exp(apart)), above)) / (apart * apart);
+  const double of_log = bend > 2 ? std::sqrt(2 / bend) : 1;
   const Eigen::Index last = fit.solution.shared.size() - 1;
-  h.parameters = {{"limit_speed_m_s", fit.solution.shared[last], std::sqrt(std::max(0.0, fit.solution.covariance(last, last)))}, {"sharpness", sharp, 0.4 * sharp}};
+  const double speed = fit.solution.shared[last], of_speed = std::hypot(std::sqrt(std::max(0.0, fit.solution.covariance(last, last))), of_log * (above - below) / (2 * apart));
+  h.parameters = {{"speed_at_normal_force_m_s", speed, std::hypot(of_speed, contact_faults::creep * speed)}, {"sharpness", sharp, sharp * std::hypot(of_log, contact_faults::creep)}};
   return h;
 }
 
