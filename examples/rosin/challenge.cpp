@@ -13,6 +13,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <numeric>
 #include <sstream>
 
 namespace tool {
@@ -42,6 +43,13 @@ std::string describe(const options& o) {
   return out + (o.effect.empty() ? "`" : " --effect " + o.effect + "`");
 }
 
+/// A rig belongs to the same part on every machine, whatever else is in the folder: by the number that its name ends with, or by its letters.
+std::size_t part_of(const std::string& name, std::size_t parts) {
+  const std::string digits = name.substr(name.find_last_not_of("0123456789") + 1);
+  if (!digits.empty() && digits.size() < 19) return static_cast<std::size_t>(std::stoull(digits) % parts);
+  return std::accumulate(name.begin(), name.end(), std::size_t{0}, [](std::size_t sum, char c) { return sum + static_cast<unsigned char>(c); }) % parts;
+}
+
 /// Writes what is not there yet; a rig is complete once its truth is.
 std::optional<rosin::failure> make(const options& given, const places& to, std::size_t shard, std::size_t shards) {
   std::error_code error;
@@ -49,8 +57,9 @@ std::optional<rosin::failure> make(const options& given, const places& to, std::
     if (!fs::create_directories(folder, error) && error) return rosin::failure{folder.string() + ": cannot be made: " + error.message()};
   progress bar{"hiding", static_cast<std::size_t>(given.count)};
   for (int i = 0; i < given.count; ++i, bar.step()) {
-    if (static_cast<std::size_t>(i) % shards != shard) continue;
-    const auto rig = draw_challenge({given.seed * 100000 + static_cast<std::uint64_t>(i), given.effects, given.strength, given.noise_dB, given.effect});
+    const std::uint64_t seed = given.seed * 100000 + static_cast<std::uint64_t>(i);
+    if (seed % shards != shard) continue;
+    const auto rig = draw_challenge({seed, given.effects, given.strength, given.noise_dB, given.effect});
     const auto truth = to.truth / (rig.name + ".json");
     if (fs::exists(truth)) continue;
     if (auto why = write_challenge(rig, to.rigs / rig.name, true)) return why;
@@ -77,8 +86,9 @@ void diagnose_all(const places& at, bool leave_out, const provenance& from, std:
   std::sort(rigs.begin(), rigs.end());
   progress bar{"diagnosing", rigs.size()};
   for (std::size_t i = 0; i < rigs.size(); ++i, bar.step()) {
-    const auto file = at.diagnoses / (rigs[i].filename().string() + ".json");
-    if (i % shards != shard || fs::exists(file)) continue;
+    const std::string name = rigs[i].filename().string();
+    const auto file = at.diagnoses / (name + ".json");
+    if (part_of(name, shards) != shard || fs::exists(file)) continue;
     const auto start = std::chrono::steady_clock::now();
     auto own = from;
     json out{{"verdict", "failed"}, {"missing", json::array()}, {"fit", {{"metric", ""}, {"after", nullptr}, {"noise_floor", 0}}}};

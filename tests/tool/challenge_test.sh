@@ -34,6 +34,13 @@ expect 0 challenge --out b
 says "Named right: 1/2" "95 % intervals that cover: 0/1" "skew_s 2 %" "mains-hum" "| channel-skew |" "median: 1.1"
 same "$(cat b/challenge.md)" "$out"
 
+# A part is a part of the names, whatever else is in the folder: three rigs that cannot even be read.
+for n in 1 3 4; do mkdir -p parts/rigs/rig-$n; echo "schema = 1" >parts/rigs/rig-$n/rig.toml; done
+expect 0 challenge --out parts --shard 2/2
+same "$(ls parts/diagnoses | tr '\n' ' ')" "rig-1.json rig-3.json "
+expect 0 challenge --out parts --shard 1/2
+same "$(ls parts/diagnoses | wc -l)" 3
+
 expect 2 challenge --out c --count 1 --effect gremlins
 says "gremlins"
 expect 2 challenge --out c --count 1 --shard 3/2
