@@ -22,7 +22,8 @@ namespace rosin {
 /// A FrameSource.
 class jack_source {
 public:
-  /// ports: "system:capture_1", ...; an empty name leaves that channel's port free, for another program to join.
+  /// ports: "system:capture_1", ...; an empty name leaves that channel's port free, for another program to join. Returns once
+  /// frames come.
   [[nodiscard]] static outcome<jack_source> open(const std::string& client, const std::vector<std::string>& ports, const std::string& server = {}) {
     jack_set_error_function([](const char*) {});
     jack_set_info_function([](const char*) {});
@@ -65,8 +66,8 @@ private:
     std::atomic<bool> gone{false};
     jack_client_t* client = nullptr;
     jack_nframes_t expected = 0;
-    bool running = false;
     std::atomic<bool> joined{false};
+    std::atomic<bool> running{false};
     int cycles_to_wait = 2;  ///< until the server has taken over the connections: silence that nobody played
   };
   struct close_client {
@@ -78,8 +79,8 @@ private:
     if (!s.joined.load(std::memory_order_acquire)) return 0;
     if (s.cycles_to_wait > 0) return --s.cycles_to_wait, 0;
     const jack_nframes_t now = jack_last_frame_time(s.client);
-    if (s.running && now != s.expected) s.ring.lost(now - s.expected);
-    s.running = true;
+    if (s.running.load(std::memory_order_relaxed) && now != s.expected) s.ring.lost(now - s.expected);
+    s.running.store(true, std::memory_order_release);
     s.expected = now + frames;
     for (std::size_t c = 0; c < s.ports.size(); ++c) s.buffers[c] = static_cast<const float*>(jack_port_get_buffer(s.ports[c], frames));
     s.ring.write(frames, [&](std::size_t i, std::size_t c) { return s.buffers[c][i]; });
@@ -100,7 +101,14 @@ private:
       if (!from[c].empty() && jack_connect(client, from[c].c_str(), jack_port_name(state_->ports[c])) != 0)
         return failure{"jack: there is no port " + from[c] + " to listen to"};
     state_->joined.store(true, std::memory_order_release);
+    wait_for_frames();
     return std::nullopt;
+  }
+  /// What is played once a source is open is in it whole. A server that stands still is met by read's patience.
+  void wait_for_frames() const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{2};
+    while (!state_->running.load(std::memory_order_acquire) && !state_->gone.load(std::memory_order_acquire) && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(std::chrono::milliseconds{1});
   }
 
   std::unique_ptr<shared> state_;
