@@ -172,6 +172,7 @@
 #include <rosin/diagnose/contact_width.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
 #include <rosin/diagnose/friction_laws.hpp>
+#include <rosin/diagnose/hum_effect.hpp>
 #include <rosin/diagnose/isolability.hpp>
 #include <rosin/diagnose/law_choice.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>

@@ -113,15 +113,14 @@ inline void seek_beginnings(const scene_data& data, const scene_fit& already, co
   const auto strength = [&](std::size_t t) { return already.value[data.layout.at(t, pluck_layout::strength)]; };
   for (std::size_t t = 1; t < problem.takes(); ++t)
     if (strength(t) > strength(strongest)) strongest = t;
-  const auto residual = residual_of(problem, already.value, strongest);
+  left_over rest{residual_of(problem, already.value, strongest), problem.part(strongest, 1).begin_s, problem.rate_Hz(strongest), strongest, {}};
   const ringing_string string = problem.model().string(already.value);
-  std::vector<double> own;
-  for (int n = 1; string.partial_Hz(n) < problem.limits().stop_Hz && n < 1000; ++n) own.push_back(string.partial_Hz(n));
+  for (int n = 1; string.partial_Hz(n) < problem.limits().stop_Hz && n < 1000; ++n) rest.own_Hz.push_back(string.partial_Hz(n));
   std::optional<pluck_score> test;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     pluck_effect e = catalogue[i];
     if (!e.seek) continue;
-    e.starts = e.seek(residual, problem.rate_Hz(strongest), own);
+    e.starts = e.seek(rest);
     if (e.starts.empty()) continue;
     if (!test) problem.set_noise(problem.assess(already.value).noise), test.emplace(problem, already.value);
     out.starts[i] = best_starts(*test, scene_plucks(data.layout, data.guess.ac_coupled_Hz, with_one_more(already.effects, e)), e, 1);
@@ -223,18 +222,19 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
   const detail::beginnings begin = detail::find_beginnings(data, already, catalogue, strong, noise);
   const std::vector<detail::found_start> found = strong && already.effects.empty() ? detail::strong_starts(data, already, catalogue, noise) : std::vector<detail::found_start>{};
   const auto is_found = [&](const pluck_effect& e) { return std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.id == e.id(); }); };
-  std::vector<scene_fit> fits;
+  std::vector<scene_fit> fits, sought;  // the latter over all of the record from the beginning
   bool complete = false;
   for (const bool scored : {true, false})
     for (std::size_t i = 0; i < catalogue.size() && !(complete && !scored); ++i)
       if ((catalogue[i].strength >= -1) == scored && (begin.foremost[i] || is_found(catalogue[i])))
         if (auto f = detail::first_fit(data, already, catalogue[i], begin.starts[i], found, strong, noise)) {
           complete = complete || (strong && f->quality.inflation() == 1.0);
-          fits.push_back(*std::move(f));
+          (catalogue[i].seek ? sought : fits).push_back(*std::move(f));
         }
   const auto better = [&](const scene_fit& a, const scene_fit& b) { return detail::price_of(a, noise) < detail::price_of(b, noise); };
   std::sort(fits.begin(), fits.end(), better);
   detail::follow_up(data, fits, strong, noise);
+  fits.insert(fits.end(), sought.begin(), sought.end());
   std::sort(fits.begin(), fits.end(), better);
   if (strong && !fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek) fits.front() = detail::rewound(data, std::move(fits.front()), noise);
   detail::prefer_over_one_horizon(data, fits, noise);

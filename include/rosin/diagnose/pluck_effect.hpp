@@ -34,6 +34,14 @@ struct effect_parameter {
   bool late = false;         ///< a correction: freed when everything else has settled
 };
 
+/// What a fit leaves of both channels of a take.
+struct left_over {
+  std::array<Eigen::VectorXd, 2> residual;
+  double begin_s = 0, rate_Hz = 0;  ///< from the take's beginning
+  std::size_t take = 0;
+  std::vector<double> own_Hz;       ///< the string's partials
+};
+
 struct pluck_effect {
   std::string name;                        ///< as in the format "diagnosis"
   int place = -1;                          ///< 0 near, 1 far, for effects of one end or channel
@@ -49,8 +57,8 @@ struct pluck_effect {
   std::function<void(pluck_scene&, const pluck_layout&, const Eigen::VectorXd& v, std::size_t take, double value)> retune{};
   /// Nuisances that have to go along when the effect enters the model.
   std::function<void(const pluck_layout&, Eigen::VectorXd& v)> rebase{};
-  /// The search then begins where what a fit leaves of both channels of a take tells of it (the string's own partials are given), not at `starts`.
-  std::function<std::vector<std::vector<double>>(const std::array<Eigen::VectorXd, 2>& residual, double rate_Hz, const std::vector<double>& own_Hz)> seek{};
+  /// The search then begins where what a fit leaves tells of it, not at `starts`.
+  std::function<std::vector<std::vector<double>>(const left_over&)> seek{};
   double horizon_periods = 1e9;  ///< the model of the effect holds for so long
 
   [[nodiscard]] std::string id() const {

@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/diagnose/hum_effect.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 
 #include <algorithm>
@@ -160,28 +161,6 @@ inline pluck_effect pluck_width_effect(const string_facts& f) {
   const double L = f.length_m > 0 ? f.length_m : 1.0;
   return {"finite-pluck-width", -1, false, {{"width_m", 1e-5 * L, 0.1 * L, 1e-5, true}}, {{3e-3 * L}, {1e-2 * L}, {3e-2 * L}}, -1,
           [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
-}
-
-/// Mains hum: every take has its own phases; item 11. The fundamental and what rectifiers and transformers add, but for what lies near a
-/// partial of the string. Parameters of a take, one multiple after the other: re and im of near, of far.
-inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
-  std::vector<double> multiples{1};
-  for (const double m : {2.0, 3.0, 4.0, 5.0, 7.0})
-    if (const double order = m * mains_Hz / f.fundamental_Hz; std::abs(order - std::max(1.0, std::round(order))) > 0.05) multiples.push_back(m);
-  pluck_effect e{"mains-hum", -1, false, {{"frequency_Hz", mains_Hz - 0.6, mains_Hz + 0.6, 1e-6, true}}, {{mains_Hz}}, -2, {}};
-  for (std::size_t t = 0; t < f.takes; ++t)
-    for (std::size_t i = 0; i < 4 * multiples.size(); ++i) {
-      e.parameters.push_back({"amplitude", -100, 100, 1e-5, false, static_cast<int>(t)});
-      e.starts[0].push_back(0);
-    }
-  e.apply = [multiples](pluck_scene& s, const double* v, int take) {
-    const double* a = v + 1 + 4 * static_cast<std::ptrdiff_t>(multiples.size()) * take;
-    for (const double m : multiples) {
-      s.hum.push_back({v[0] * m, {std::complex<double>(a[0], a[1]), std::complex<double>(a[2], a[3])}});
-      a += 4;
-    }
-  };
-  return e;
 }
 
 /// All of them, in the order of the format. `physics`: names that the declared model already contains.

@@ -69,6 +69,7 @@ public:
     lines_.push(std::array<std::array<T, 1>, 2>{{{sound ? frame.near_N : T(0)}, {sound ? frame.far_N : T(0)}}});
     std::array<typename lanes_of<T, register_lanes<T>>::type, 4> sum;
     std::array<std::array<T, 1>, 4> wave;
+#pragma GCC unroll 4
     for (std::size_t p = 0; p < 4; ++p) {  // the newest sample apart: a register that holds it would wait for it
       const std::size_t older = passage_[p].older;
       const T* x = samples(p, older);
@@ -161,16 +162,13 @@ private:
   output_type moved_on(const std::array<std::array<T, 1>, signals>& m) noexcept {
     forces_.push(std::array<std::array<T, 1>, 2>{{m[force_near], m[force_far]}});
     using vector = typename lanes_of<T, register_lanes<T>>::type;
-    vector near{}, far{}, near_field{};
-    const auto through = [&](std::size_t which, signal from, const std::array<T, short_room>& taps, vector& sum) {
-      detail::shift_in<T>(window_[which].data(), short_room, m[from][0],
-                          [&](std::size_t j, const vector& x) { sum += detail::load_lanes<vector>(&taps[j]) * x; });
+    const auto through = [&](std::size_t which, signal from, const std::array<T, short_room>& taps, const vector& before) {
+      return detail::shift_dot(window_[which].data(), taps.data(), short_room, m[from][0], before);
     };
-    through(0, round_near, admittance_, near);
-    through(1, round_far, admittance_, far);
-    through(2, force, near_field_, near_field);
+    const vector near_field = through(2, force, near_field_, vector{});
+    const vector near = through(0, round_near, admittance_, near_field), far = through(1, round_far, admittance_, near_field);
     constexpr std::size_t width = register_lanes<T>;
-    return {*forces_.at(0, Short), *forces_.at(1, Short), detail::sum_of_lanes<T, width>(near + near_field), detail::sum_of_lanes<T, width>(far + near_field)};
+    return {*forces_.at(0, Short), *forces_.at(1, Short), detail::sum_of_lanes<T, width>(near), detail::sum_of_lanes<T, width>(far)};
   }
 
   void run_chunk(const input_type* in, output_type* out) noexcept {

@@ -137,24 +137,24 @@ template <class T>
   else return vector(sum[0] + sum[1]);
 }
 
-/// Moves a window of `count` samples on by one, `newest` behind them, and shows use(j, register) what is in it from j on.
-template <class T, class Use>
-void shift_in(T* window, std::size_t count, T newest, Use use) noexcept {
+/// Moves a window of `count` samples on by one, `newest` behind them; `sum` and the sum of taps and window, spread over the lanes.
+template <class T, class Vector>
+[[nodiscard, gnu::always_inline]] inline Vector shift_dot(T* window, const T* taps, std::size_t count, T newest, Vector sum) noexcept {
   constexpr std::size_t width = register_lanes<T>;
-  using vector = typename lanes_of<T, width>::type;
-  vector now = load_lanes<vector>(window);
+  Vector now = load_lanes<Vector>(window);
   for (std::size_t j = 0; j < count; j += width) {
-    vector next{};
-    if (j + width < count) next = load_lanes<vector>(window + j + width);
+    Vector next{};
+    if (j + width < count) next = load_lanes<Vector>(window + j + width);
     else if constexpr (width == 1) next = newest;
     else next[0] = newest;
     if constexpr (width == 1) now = next;
     else
       now = [&]<std::size_t... I>(std::index_sequence<I...>) { return __builtin_shufflevector(now, next, (I + 1)...); }(std::make_index_sequence<width>{});
     std::memcpy(window + j, &now, sizeof now);
-    use(j, now);
+    sum += load_lanes<Vector>(taps + j) * now;
     now = next;
   }
+  return sum;
 }
 
 /// The same for x, x + 1, ...: a chunk of outputs at once, each tap fetched once.

@@ -65,14 +65,18 @@ TEST_CASE_TEMPLATE("sums in registers are the plain sums", T, float, double) {
 TEST_CASE_TEMPLATE("a window moves on by one", T, float, double) {
   constexpr std::size_t count = 2 * rosin::detail::passage_quantum<T>;
   using vector = typename rosin::lanes_of<T, rosin::register_lanes<T>>::type;
-  std::array<T, count> window{};
+  std::array<T, count> window{}, taps;
+  for (std::size_t j = 0; j < count; ++j) taps[j] = static_cast<T>(j % 7) - T(3);
+  vector before{};
+  if constexpr (rosin::register_lanes<T> == 1) before = T(5);
+  else before[0] = T(5);
   for (std::size_t i = 0; i < 3 * count; ++i) {
-    T sum = 0;
-    rosin::detail::shift_in<T>(window.data(), count, static_cast<T>(i + 1), [&](std::size_t, const vector& v) { sum += rosin::detail::sum_of_lanes<T, rosin::register_lanes<T>>(v); });
-    T plain = 0;
+    const vector spread = rosin::detail::shift_dot(window.data(), taps.data(), count, static_cast<T>(i + 1), before);
+    const T sum = rosin::detail::sum_of_lanes<T, rosin::register_lanes<T>>(spread);
+    T plain = 5;
     for (std::size_t j = 0; j < count; ++j) {
       CHECK(window[j] == (i + j + 2 > count ? static_cast<T>(i + j + 2 - count) : T(0)));
-      plain += window[j];
+      plain += taps[j] * window[j];
     }
     CHECK(sum == plain);
   }

@@ -1,0 +1,83 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Mains hum: lines at the mains' frequency and at what rectifiers and transformers add, but for those near a partial of the string; every
+// take has its own phases (specification sheet 6.1, item 11). Sought in what a fit leaves: there all lines together have to take away more
+// than noise would give them,
+//
+//     gain of ln L = (n / 2) sum over channels of ln(power before / power after)  >  k / 2 + sqrt(k / 2),   k amplitudes.
+//
+#pragma once
+
+#include <rosin/diagnose/pluck_effect.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rosin {
+
+namespace detail {
+
+/// Least squares of lines at these frequencies in what is left of both channels.
+struct lines_in_rest {
+  double gain = 0;               ///< of ln L
+  std::vector<double> parts_N;   ///< re and im of near, of far, line by line: Re(a exp(2 pi i f t)), t from the take's beginning
+};
+
+inline lines_in_rest lines_at(const left_over& rest, const std::vector<double>& frequencies_Hz) {
+  const auto k = static_cast<Eigen::Index>(2 * frequencies_Hz.size());
+  const Eigen::Index n = rest.residual[0].size();
+  lines_in_rest out{0, std::vector<double>(2 * static_cast<std::size_t>(k), 0.0)};
+  if (n < 4 * k) return out;
+  Eigen::MatrixXd turning(n, k);
+  for (Eigen::Index l = 0; l < k / 2; ++l) {
+    const double w = 2 * std::numbers::pi * frequencies_Hz[static_cast<std::size_t>(l)];
+    const auto phase = w * (rest.begin_s + Eigen::ArrayXd::LinSpaced(n, 0, static_cast<double>(n - 1)) / rest.rate_Hz);
+    turning.col(2 * l) = phase.cos(), turning.col(2 * l + 1) = -phase.sin();
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> gram(turning.transpose() * turning);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Eigen::VectorXd& x = rest.residual[c];
+    const Eigen::VectorXd projected = turning.transpose() * x, amplitude = gram.solve(projected);
+    const double before = x.squaredNorm(), after = before - amplitude.dot(projected);
+    if (before > 0) out.gain += 0.5 * static_cast<double>(n) * std::log(before / std::max(after, 1e-12 * before));
+    for (Eigen::Index i = 0; i < k; ++i) out.parts_N[static_cast<std::size_t>(4 * (i / 2) + i % 2) + 2 * c] = amplitude[i];
+  }
+  return out;
+}
+
+}  // namespace detail
+
+/// Parameters of a take, one multiple after the other: re and im of near, of far.
+inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
+  std::vector<double> multiples{1};
+  for (const double m : {2.0, 3.0, 4.0, 5.0, 7.0})
+    if (const double order = m * mains_Hz / f.fundamental_Hz; std::abs(order - std::max(1.0, std::round(order))) > 0.05) multiples.push_back(m);
+  const std::size_t of_take = 4 * multiples.size();
+  pluck_effect e{"mains-hum", -1, false, {{"frequency_Hz", mains_Hz - 0.6, mains_Hz + 0.6, 1e-6, true}}, {{mains_Hz}}, -1, {}};
+  for (std::size_t i = 0; i < f.takes * of_take; ++i) {
+    e.parameters.push_back({"amplitude", -100, 100, 1e-5, false, static_cast<int>(i / of_take)});
+    e.starts[0].push_back(0);
+  }
+  e.apply = [multiples, of_take](pluck_scene& s, const double* v, int take) {
+    const double* a = v + 1 + static_cast<std::ptrdiff_t>(of_take) * take;
+    for (const double m : multiples) {
+      s.hum.push_back({v[0] * m, {std::complex<double>(a[0], a[1]), std::complex<double>(a[2], a[3])}});
+      a += 4;
+    }
+  };
+  e.seek = [multiples, of_take, mains_Hz, nothing = e.starts[0]](const left_over& rest) -> std::vector<std::vector<double>> {
+    std::vector<double> at;
+    for (const double m : multiples) at.push_back(m * mains_Hz);
+    const detail::lines_in_rest found = detail::lines_at(rest, at);
+    const double by_chance = 0.5 * static_cast<double>(of_take);
+    if (!(found.gain > by_chance + std::sqrt(by_chance))) return {};
+    std::vector<double> start = nothing;
+    std::copy(found.parts_N.begin(), found.parts_N.end(), start.begin() + 1 + static_cast<std::ptrdiff_t>(rest.take * of_take));
+    return {start};
+  };
+  return e;
+}
+
+}  // namespace rosin

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/diagnose/hum_effect.hpp>
+
+#include <rosin/diagnose/scene_plucks.hpp>
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+namespace {
+
+constexpr double rate_Hz = 20000, begin_s = 0.0123;
+
+/// Noise of 5 mN in both channels, and lines at 60 and 180 Hz.
+rosin::left_over humming(double amplitude_N) {
+  std::mt19937 random{7};
+  std::normal_distribution<double> noise{0, 0.005};
+  rosin::left_over rest{{Eigen::VectorXd(2800), Eigen::VectorXd(2800)}, begin_s, rate_Hz, 1, {}};
+  for (Eigen::Index i = 0; i < 2800; ++i) {
+    const double t = begin_s + static_cast<double>(i) / rate_Hz, turn = 2 * std::numbers::pi * 60 * t;
+    const double hum = amplitude_N * (std::cos(turn + 0.7) + 0.3 * std::cos(3 * turn - 1));
+    rest.residual[0][i] = hum + noise(random);
+    rest.residual[1][i] = -0.5 * hum + noise(random);
+  }
+  return rest;
+}
+
+const rosin::string_facts hummed{311, rate_Hz, 9000, 0.2, 0.6, 3};
+
+}  // namespace
+
+TEST_CASE("hum: what is left over tells where to begin, in that take alone") {
+  const auto hum = rosin::hum_effect(hummed, 60);
+  const auto starts = hum.seek(humming(0.004));
+  REQUIRE(starts.size() == 1);
+  const std::vector<double>& s = starts[0];
+  REQUIRE(s.size() == hum.parameters.size());
+  CHECK(s[0] == 60);
+  rosin::pluck_scene here, elsewhere;
+  hum.apply(here, s.data(), 1);
+  hum.apply(elsewhere, s.data(), 0);
+  const auto near = here.hum[0].amplitude_N[0], far = here.hum[0].amplitude_N[1];
+  CHECK(std::abs(near - std::polar(0.004, 0.7)) < 6e-4);
+  CHECK(std::abs(far + std::polar(0.002, 0.7)) < 6e-4);
+  for (const auto& line : elsewhere.hum) CHECK(std::abs(line.amplitude_N[0]) == 0);
+  double third = 0;
+  for (const auto& line : here.hum)
+    if (line.frequency_Hz == 180) third = std::abs(line.amplitude_N[0]);
+  CHECK(third == doctest::Approx(0.0012).epsilon(0.4));
+}
+
+TEST_CASE("hum: noise is not taken for it, nor another mains' frequency") {
+  CHECK(rosin::hum_effect(hummed, 60).seek(humming(0)).empty());
+  CHECK(rosin::hum_effect(hummed, 50).seek(humming(0)).empty());
+  CHECK(rosin::hum_effect(hummed, 60).seek(humming(0.0015)).size() == 1);
+}
+
+TEST_CASE("hum: no line near a partial of the string") {
+  const auto hum = rosin::hum_effect({300.5, rate_Hz, 9000, 0.2, 0.6, 1}, 60);  // five times 60 is the fundamental
+  rosin::pluck_scene s;
+  const std::vector<double> start(hum.parameters.size(), 0.0);
+  hum.apply(s, start.data(), 0);
+  CHECK(s.hum.size() == 5);
+  CHECK(hum.parameters.size() == 1 + 4 * 5);
+}
