@@ -67,88 +67,69 @@ class stretching_pluck {
 public:
   /// Partials to `most` below the stop frequency, seen through the band.
   stretching_pluck(const ringing_string& string, double position, double force_over_tension, const band& limits, int most) : force_{force_over_tension} {
-    for (int n = 1; n <= most && string.partial_Hz(n) < limits.stop_Hz; ++n) {
+    int count = 0;
+    while (count < most && string.partial_Hz(count + 1) < limits.stop_Hz) ++count;
+    for (Eigen::ArrayXd* x : {&held_, &kick_, &stiff_, &weight_, &sign_, &decay_1_s_, &turn_rad_s_}) x->resize(count);
+    for (int i = 0; i < count; ++i) {
+      const int n = i + 1;
       const double f = string.partial_Hz(n), w = 2 * std::numbers::pi * f, half = string.loss.inverse_q(f) / 2;
       const double c_k = 2 * std::numbers::pi * string.fundamental_Hz * n, b = string.inharmonicity * n * n;
       // Slope amplitude k q of the held string: 2 F sin(k x) / (L k (T + B k^2)) -> (2 / (n pi)) (F/T) sin / (1 + b)
-      modes_.push_back({2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) / (1 + b), c_k * c_k, 1 + b, band_weight(limits, {-w * half, w}).real(),
-                        n % 2 ? 1.0 : -1.0, w * half, w * std::sqrt(1 - half * half), w * w});
+      held_[i] = 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) / (1 + b);
+      kick_[i] = c_k * c_k, stiff_[i] = 1 + b, weight_[i] = band_weight(limits, {-w * half, w}).real(), sign_[i] = n % 2 ? 1 : -1;
+      decay_1_s_[i] = w * half, turn_rad_s_[i] = w * std::sqrt(1 - half * half);
     }
   }
 
   /// `count` values, the first `first_s` after the release (in [0, sample_s]), then every sample_s, each reached in `steps` steps.
   /// stretch: EA / (4 T), dimensionless with k q in units of slope.
   [[nodiscard]] stretched_motion run(double stretch, double first_s, double sample_s, std::size_t steps, std::size_t count) const {
-    std::vector<double> q(modes_.size()), p(modes_.size(), 0.0);
+    Eigen::ArrayXd q, p = Eigen::ArrayXd::Zero(held_.size()), scratch;
     double e = 0;
     for (int i = 0; i < 8; ++i) {  // the held string is stretched as well
-      double sum = 0;
-      for (std::size_t n = 0; n < q.size(); ++n) {
-        q[n] = force_ * modes_[n].held * modes_[n].stiff / (modes_[n].stiff + e);
-        sum += q[n] * q[n];
-      }
-      e = stretch * sum;
+      q = force_ * held_ * stiff_ / (stiff_ + e);
+      e = stretch * q.square().sum();
     }
     stretched_motion out{{std::vector<double>(count), std::vector<double>(count)}, std::vector<double>(count)};
     const double first_step_s = first_s / static_cast<double>(steps), step_s = sample_s / static_cast<double>(steps);
-    const std::vector<half_turn> first_turns = half_turns(first_step_s), turns = half_turns(step_s);
-    for (std::size_t k = 0; k < steps; ++k) step(q, p, first_turns, stretch, first_step_s);
+    const half_turn first_turn = half_turn_in(first_step_s), turn = half_turn_in(step_s);
+    for (std::size_t k = 0; k < steps; ++k) step(q, p, scratch, first_turn, stretch, first_step_s);
     for (std::size_t i = 0; i < count; ++i) {
-      double even = 0, odd = 0, sum = 0;
-      for (std::size_t n = 0; n < q.size(); ++n) sum += q[n] * q[n];
-      e = stretch * sum;
-      for (std::size_t n = 0; n < q.size(); ++n) (modes_[n].sign > 0 ? odd : even) += modes_[n].weight * (modes_[n].stiff + e) * q[n];
-      out.force[0][i] = (odd + even) / force_, out.force[1][i] = (odd - even) / force_, out.strain[i] = sum / 4;
-      for (std::size_t k = 0; k < steps; ++k) step(q, p, turns, stretch, step_s);
+      const double sum = q.square().sum();
+      scratch = weight_ * (stiff_ + stretch * sum) * q;
+      out.force[0][i] = scratch.sum() / force_, out.force[1][i] = (sign_ * scratch).sum() / force_, out.strain[i] = sum / 4;
+      for (std::size_t k = 0; k < steps; ++k) step(q, p, scratch, turn, stretch, step_s);
     }
     return out;
   }
 
   /// Mean strain of the held string.
-  [[nodiscard]] double held_strain() const {
-    double sum = 0;
-    for (const mode& m : modes_) sum += std::pow(force_ * m.held, 2);
-    return sum / 4;
-  }
+  [[nodiscard]] double held_strain() const { return (force_ * held_).square().sum() / 4; }
 
 private:
-  struct mode {
-    double held, kick, stiff, weight, sign, decay_1_s, turn_rad_s, square;
-  };
   struct half_turn {
-    double qq, qp, pq, pp;
+    Eigen::ArrayXd qq, qp, pq, pp;
+    void operator()(Eigen::ArrayXd& q, Eigen::ArrayXd& p, Eigen::ArrayXd& scratch) const {
+      scratch = qq * q + qp * p;
+      p = pq * q + pp * p;
+      q.swap(scratch);
+    }
   };
 
-  [[nodiscard]] std::vector<half_turn> half_turns(double step_s) const {
-    std::vector<half_turn> out;
-    for (const mode& m : modes_) {
-      const double h = step_s / 2, decay = std::exp(-m.decay_1_s * h), s = std::sin(m.turn_rad_s * h) / m.turn_rad_s, c = std::cos(m.turn_rad_s * h);
-      out.push_back({decay * (c + m.decay_1_s * s), decay * s, -decay * m.square * s, decay * (c - m.decay_1_s * s)});
-    }
-    return out;
+  [[nodiscard]] half_turn half_turn_in(double step_s) const {
+    const double h = step_s / 2;
+    const Eigen::ArrayXd decay = (-decay_1_s_ * h).exp(), s = (turn_rad_s_ * h).sin() / turn_rad_s_, c = (turn_rad_s_ * h).cos();
+    return {decay * (c + decay_1_s_ * s), decay * s, -decay * (decay_1_s_.square() + turn_rad_s_.square()) * s, decay * (c - decay_1_s_ * s)};
   }
 
-  void step(std::vector<double>& q, std::vector<double>& p, const std::vector<half_turn>& turns, double stretch, double step_s) const {
-    double sum = 0;
-    for (std::size_t n = 0; n < q.size(); ++n) {
-      const half_turn& m = turns[n];
-      const double a = m.qq * q[n] + m.qp * p[n];
-      p[n] = m.pq * q[n] + m.pp * p[n];
-      q[n] = a;
-      sum += a * a;
-    }
-    const double e = stretch * sum * step_s;
-    for (std::size_t n = 0; n < q.size(); ++n) {
-      const half_turn& m = turns[n];
-      p[n] -= e * modes_[n].kick * q[n];
-      const double a = m.qq * q[n] + m.qp * p[n];
-      p[n] = m.pq * q[n] + m.pp * p[n];
-      q[n] = a;
-    }
+  void step(Eigen::ArrayXd& q, Eigen::ArrayXd& p, Eigen::ArrayXd& scratch, const half_turn& turn, double stretch, double step_s) const {
+    turn(q, p, scratch);
+    p -= stretch * q.square().sum() * step_s * kick_ * q;
+    turn(q, p, scratch);
   }
 
   double force_;
-  std::vector<mode> modes_;
+  Eigen::ArrayXd held_, kick_, stiff_, weight_, sign_, decay_1_s_, turn_rad_s_;  ///< mode by mode
 };
 
 /// What the tension of a plucked string is higher by in the mean over the first periods, relatively: half of e is there in the mean, as half

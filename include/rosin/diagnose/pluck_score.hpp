@@ -117,7 +117,7 @@ private:
   void add(const view& w, const std::vector<damped_line>& changed, std::size_t take, double& dr, double& dd, Eigen::VectorXd& dJ) const {
     const double step_s = 1 / problem_.rate_Hz(take), near = 0.05 * 2 * std::numbers::pi * problem_.model().string(value_).fundamental_Hz;
     const auto N = static_cast<Eigen::Index>(w.lines.size());
-    std::array<Eigen::VectorXd, 2> d{Eigen::VectorXd::Zero(4 * N), Eigen::VectorXd::Zero(4 * N)};
+    Eigen::MatrixX2d d = Eigen::MatrixX2d::Zero(4 * N, 2);
     std::vector<bool> met(w.lines.size(), false);
     std::vector<damped_line> fresh;
     std::size_t from = 0;
@@ -126,14 +126,16 @@ private:
       double apart = near;
       for (std::size_t k = 0; k < w.lines.size(); ++k) {  // most lines stand in the same order
         const std::size_t j = (from + k) % w.lines.size();
-        if (met[j]) continue;
+        if (met[j] || std::abs(w.lines[j].pole.imag() - line.pole.imag()) > apart) continue;
         const double dist = std::abs(w.lines[j].pole - line.pole);
         if (line.pole.imag() == 0 && dist > 0) continue;  // what is slow may die away within the record: exactly, then, as a line of its own
         const bool same_channel = (line.residue[0] != 0.0) == (w.lines[j].residue[0] != 0.0) || dist > 0 || line.pole.imag() != 0;
         if (dist < apart && same_channel) apart = dist, best = j;
         if (dist < 1e-3 * near && same_channel) break;
       }
-      const auto is_closer = [&](const damped_line& other) { return &other != &line && std::abs(other.pole - w.lines[best].pole) < apart; };
+      const auto is_closer = [&](const damped_line& other) {
+        return &other != &line && std::abs(other.pole.imag() - w.lines[best].pole.imag()) < apart && std::abs(other.pole - w.lines[best].pole) < apart;
+      };
       if (apart > 1e-3 * near && best < w.lines.size() && std::any_of(changed.begin(), changed.end(), is_closer)) best = w.lines.size();  // a new line beside an old one
       if (best == w.lines.size()) {
         fresh.push_back(line);
@@ -144,17 +146,19 @@ private:
       for (std::size_t c = 0; c < 2; ++c) {
         const auto was = w.lines[best].residue[c];
         const auto more = line.residue[c] - was, drift = was * (line.pole - w.lines[best].pole);
-        d[c].segment<4>(4 * static_cast<Eigen::Index>(best)) << more.real(), -more.imag(), drift.real(), -drift.imag();
+        d.col(static_cast<Eigen::Index>(c)).segment<4>(4 * static_cast<Eigen::Index>(best)) << more.real(), -more.imag(), drift.real(), -drift.imag();
       }
     }
     for (std::size_t j = 0; j < w.lines.size(); ++j)
       if (!met[j])
-        for (std::size_t c = 0; c < 2; ++c) d[c].segment<2>(4 * static_cast<Eigen::Index>(j)) << -w.lines[j].residue[c].real(), w.lines[j].residue[c].imag();
+        for (Eigen::Index c = 0; c < 2; ++c) d.col(c).segment<2>(4 * static_cast<Eigen::Index>(j)) << -w.lines[j].residue[static_cast<std::size_t>(c)].real(), w.lines[j].residue[static_cast<std::size_t>(c)].imag();
     keep_strongest(fresh);
+    const Eigen::MatrixX2d of_both = w.gram * d;
     for (std::size_t c = 0; c < 2; ++c) {
       const double sure = 1 / std::pow(problem_.noise()[c], 2);
-      Eigen::VectorXd of_d = w.gram * d[c];
-      double r = d[c].dot(w.onto[c]), square = d[c].dot(of_d);
+      const auto own = d.col(static_cast<Eigen::Index>(c));
+      const auto of_d = of_both.col(static_cast<Eigen::Index>(c));
+      double r = own.dot(w.onto[c]), square = own.dot(of_d);
       Eigen::VectorXd onto_J = w.to[c] * of_d;
       for (std::size_t i = 0; i < fresh.size(); ++i) {
         const auto a = fresh[i].residue[c];
@@ -162,7 +166,7 @@ private:
         const auto s = against(w.residual[c], fresh[i].pole, step_s);
         r += a.real() * s.real() - a.imag() * s.imag();
         const Eigen::VectorXd cross = cross_gram(w, fresh[i].pole, a, step_s, problem_.part(take, 1).count());
-        square += 2 * cross.dot(d[c]);
+        square += 2 * cross.dot(own);
         onto_J += w.to[c] * cross;
         for (std::size_t k = 0; k < fresh.size(); ++k) {
           const auto b = fresh[k].residue[c];
