@@ -51,7 +51,10 @@ public:
       const auto got = state_->ring.read(std::span{block}.first(most));
       std::transform(block.begin(), block.begin() + static_cast<std::ptrdiff_t>(got.frames * width), interleaved.begin(), [](float x) { return static_cast<double>(x); });
       if (got.frames > 0) return {got.frames, got.lost, false, got.lost > 0 ? "jack: overrun" : ""};
-      if (gone) return {0, 0, true, "jack: the server is gone"};
+      if (gone) {  // jackd ends by SIGPIPE, and stays in JACK's list of servers, where a client goes before it has
+        std::this_thread::sleep_for(std::chrono::milliseconds{300});
+        return {0, 0, true, "jack: the server is gone"};
+      }
       if (std::chrono::steady_clock::now() >= deadline) return {};
       std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
