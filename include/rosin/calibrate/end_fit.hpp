@@ -44,7 +44,7 @@ namespace detail {
 class end_fitter {
 public:
   end_fitter(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options, const end_options& how, const pluck_start& start)
-      : takes_{takes}, how_{how}, d_{takes, guess, options, how.known, start} {}
+      : takes_{takes}, how_{how}, d_{takes, guess, options, {remembered(how.known[0]), remembered(how.known[1])}, start} {}
 
   /// From a rough start to the whole record.
   [[nodiscard]] outcome<end_fit_result> run() {

@@ -19,12 +19,24 @@
 #include <Eigen/Dense>
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <vector>
 
 namespace rosin {
 
 /// Relative admittance of an end that is known, at any s with a real part >= 0; empty: rigid.
 using known_admittance = std::function<std::complex<double>(std::complex<double>)>;
+
+/// The same, asked once at each s: a fit's frequencies stay where they are, and a table takes its time. Not for several threads.
+[[nodiscard]] inline known_admittance remembered(known_admittance end) {
+  if (!end) return end;
+  return [end, seen = std::make_shared<std::map<std::pair<double, double>, std::complex<double>>>()](std::complex<double> s) {
+    const auto [at, fresh] = seen->try_emplace({s.real(), s.imag()});
+    if (fresh) at->second = end(s);
+    return at->second;
+  };
+}
 
 /// What is fitted: the layout of the plucks, and one mode after the other with the end that it belongs to.
 struct end_model {

@@ -35,16 +35,12 @@ public:
   [[nodiscard]] complex relative_admittance(double frequency_Hz) const { return at({1e-7 * std::abs(frequency_Hz) + 1e-6, 2 * std::numbers::pi * frequency_Hz}); }
   /// At any s with a positive real part.
   [[nodiscard]] complex at(complex s) const {
-    complex sum = 0, before_minus = 0, before_plus = 0;
+    complex sum = 0;
     const complex is = s * complex(0, 1);
-    for (std::size_t k = 0; k < w_.size(); ++k) {
-      const complex minus = std::log(w_[k] - is), plus = std::log(w_[k] + is);
-      if (k > 0) {
-        const double slope = (re_[k] - re_[k - 1]) / (w_[k] - w_[k - 1]), level = re_[k] - slope * w_[k];
-        const complex d_minus = minus - before_minus, d_plus = plus - before_plus;
-        sum += level * (d_minus - d_plus) / complex(0, 2) + 0.5 * slope * s * (d_minus + d_plus);
-      }
-      before_minus = minus, before_plus = plus;
+    for (std::size_t k = 1; k < w_.size(); ++k) {
+      const double half = (w_[k] - w_[k - 1]) / 2, middle = w_[k - 1] + half, slope = (re_[k] - re_[k - 1]) / (2 * half), level = re_[k] - slope * w_[k];
+      const complex minus = log_ratio(middle - is, half), plus = log_ratio(middle + is, half);
+      sum += level * (minus - plus) / complex(0, 2) + 0.5 * slope * s * (minus + plus);
     }
     return 2 / std::numbers::pi * sum + beyond(s);
   }
@@ -75,6 +71,12 @@ public:
   double per_mass_per_s = 0;  ///< Z over the mass of what lies below
 
 private:
+  /// ln((m + h) / (m - h)): far from a piece by its series, to 1e-12 of it.
+  [[nodiscard]] static complex log_ratio(complex m, double h) {
+    if (std::norm(m) < 400 * h * h) return std::log(m + h) - std::log(m - h);
+    const complex q = h / m, q2 = q * q;
+    return 2.0 * q * (1.0 + q2 * (1.0 / 3 + q2 * (1.0 / 5 + q2 * (1.0 / 7 + q2 / 9.0))));
+  }
   friend outcome<table_termination> complete_admittance(std::span<const measured_admittance>, double, double);
   [[nodiscard]] complex beyond(complex s) const { return spring_s * s + (per_mass_per_s > 0 ? residual_mass()(s) : 0.0); }
   /// A mass to the table's eye; at 0 Hz it is held.

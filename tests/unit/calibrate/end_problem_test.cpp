@@ -60,3 +60,16 @@ TEST_CASE("under a force that stays, an end that gives way is so much more strin
   CHECK(held.force[0] == doctest::Approx(0.75e-3 / (1e-3 + more)));
   CHECK(held.force[1] == doctest::Approx((0.25e-3 + more) / (1e-3 + more)));
 }
+
+TEST_CASE("end_problem: an end that is remembered is asked once at each s, by copies too") {
+  int asked = 0;
+  const rosin::known_admittance end = rosin::remembered([&](std::complex<double> s) { return ++asked, 2.0 * s; });
+  const rosin::known_admittance copy = end;
+  for (int i = 0; i < 3; ++i)
+    for (const std::complex<double> s : {std::complex<double>(1, 5), std::complex<double>(1, -5)}) {
+      CHECK(end(s) == 2.0 * s);
+      CHECK(copy(s) == 2.0 * s);
+    }
+  CHECK(asked == 2);
+  CHECK_FALSE(rosin::remembered({}));
+}
