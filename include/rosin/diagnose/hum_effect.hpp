@@ -25,7 +25,7 @@ struct lines_in_rest {
   std::vector<double> parts_N;   ///< re and im of near, of far, line by line: Re(a exp(2 pi i f t)), t from the take's beginning
 };
 
-inline lines_in_rest lines_at(const left_over& rest, const std::vector<double>& frequencies_Hz) {
+inline lines_in_rest lines_at(const take_residual& rest, const std::vector<double>& frequencies_Hz) {
   const auto k = static_cast<Eigen::Index>(2 * frequencies_Hz.size());
   const Eigen::Index n = rest.residual[0].size();
   lines_in_rest out{0, std::vector<double>(2 * static_cast<std::size_t>(k), 0.0)};
@@ -67,7 +67,7 @@ inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
       a += 4;
     }
   };
-  e.seek = [multiples, of_take, mains_Hz, nothing = e.starts[0]](const left_over& rest) -> std::vector<std::vector<double>> {
+  e.seek = [multiples, of_take, mains_Hz, nothing = e.starts[0]](const take_residual& rest) -> std::vector<std::vector<double>> {
     std::vector<double> at;
     for (const double m : multiples) at.push_back(m * mains_Hz);
     const detail::lines_in_rest found = detail::lines_at(rest, at);

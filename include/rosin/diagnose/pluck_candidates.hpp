@@ -113,7 +113,7 @@ inline void seek_beginnings(const scene_data& data, const scene_fit& already, co
   const auto strength = [&](std::size_t t) { return already.value[data.layout.at(t, pluck_layout::strength)]; };
   for (std::size_t t = 1; t < problem.takes(); ++t)
     if (strength(t) > strength(strongest)) strongest = t;
-  left_over rest{residual_of(problem, already.value, strongest), problem.part(strongest, 1).begin_s, problem.rate_Hz(strongest), strongest, {}};
+  take_residual rest{residual_of(problem, already.value, strongest), problem.part(strongest, 1).begin_s, problem.rate_Hz(strongest), strongest, {}};
   const ringing_string string = problem.model().string(already.value);
   for (int n = 1; string.partial_Hz(n) < problem.limits().stop_Hz && n < 1000; ++n) rest.own_Hz.push_back(string.partial_Hz(n));
   std::optional<pluck_score> test;

@@ -35,7 +35,7 @@ struct effect_parameter {
 };
 
 /// What a fit leaves of both channels of a take.
-struct left_over {
+struct take_residual {
   std::array<Eigen::VectorXd, 2> residual;
   double begin_s = 0, rate_Hz = 0;  ///< from the take's beginning
   std::size_t take = 0;
@@ -58,7 +58,7 @@ struct pluck_effect {
   /// Nuisances that have to go along when the effect enters the model.
   std::function<void(const pluck_layout&, Eigen::VectorXd& v)> rebase{};
   /// The search then begins where what a fit leaves tells of it, not at `starts`.
-  std::function<std::vector<std::vector<double>>(const left_over&)> seek{};
+  std::function<std::vector<std::vector<double>>(const take_residual&)> seek{};
   double horizon_periods = 1e9;  ///< the model of the effect holds for so long
 
   [[nodiscard]] std::string id() const {

@@ -108,7 +108,7 @@ inline pluck_effect sympathetic_string_effect(const string_facts& f, int end) {
                        s.ends[static_cast<std::size_t>(end)].modes.push_back({at, v[1], v[2] * Z * std::pow(n, v[3])});
                  }};
   for (const double ratio : {0.5, 0.749, 1.335}) e.starts.push_back({ratio * f.fundamental_Hz, 1000, 1e-4 / Z, 2, 0});  // for what can be told of a rig in advance
-  e.seek = [Z](const left_over& rest) {
+  e.seek = [Z](const take_residual& rest) {
     std::vector<detail::comb_of_peaks> combs;
     for (const Eigen::VectorXd& channel : rest.residual)
       for (const auto& c : detail::foreign_combs(detail::peaks_between(channel, rest.rate_Hz, rest.own_Hz), rest.own_Hz))

@@ -12,10 +12,10 @@ namespace {
 constexpr double rate_Hz = 20000, begin_s = 0.0123;
 
 /// Noise of 5 mN in both channels, and lines at 60 and 180 Hz.
-rosin::left_over humming(double amplitude_N) {
+rosin::take_residual humming(double amplitude_N) {
   std::mt19937 random{7};
   std::normal_distribution<double> noise{0, 0.005};
-  rosin::left_over rest{{Eigen::VectorXd(2800), Eigen::VectorXd(2800)}, begin_s, rate_Hz, 1, {}};
+  rosin::take_residual rest{{Eigen::VectorXd(2800), Eigen::VectorXd(2800)}, begin_s, rate_Hz, 1, {}};
   for (Eigen::Index i = 0; i < 2800; ++i) {
     const double t = begin_s + static_cast<double>(i) / rate_Hz, turn = 2 * std::numbers::pi * 60 * t;
     const double hum = amplitude_N * (std::cos(turn + 0.7) + 0.3 * std::cos(3 * turn - 1));
