@@ -9,15 +9,15 @@
 
 namespace {
 
-constexpr double rate_Hz = 20000, begin_s = 0.0123;
+constexpr double hum_rate_Hz = 20000, hum_begin_s = 0.0123;
 
 /// Noise of 5 mN in both channels, and lines at 60 and 180 Hz.
 rosin::take_residual humming(double amplitude_N) {
   std::mt19937 random{7};
   std::normal_distribution<double> noise{0, 0.005};
-  rosin::take_residual rest{{Eigen::VectorXd(2800), Eigen::VectorXd(2800)}, begin_s, rate_Hz, 1, {}};
+  rosin::take_residual rest{{Eigen::VectorXd(2800), Eigen::VectorXd(2800)}, hum_begin_s, hum_rate_Hz, 1, {}};
   for (Eigen::Index i = 0; i < 2800; ++i) {
-    const double t = begin_s + static_cast<double>(i) / rate_Hz, turn = 2 * std::numbers::pi * 60 * t;
+    const double t = hum_begin_s + static_cast<double>(i) / hum_rate_Hz, turn = 2 * std::numbers::pi * 60 * t;
     const double hum = amplitude_N * (std::cos(turn + 0.7) + 0.3 * std::cos(3 * turn - 1));
     rest.residual[0][i] = hum + noise(random);
     rest.residual[1][i] = -0.5 * hum + noise(random);
@@ -25,7 +25,7 @@ rosin::take_residual humming(double amplitude_N) {
   return rest;
 }
 
-const rosin::string_facts hummed{311, rate_Hz, 9000, 0.2, 0.6, 3};
+const rosin::string_facts hummed{311, hum_rate_Hz, 9000, 0.2, 0.6, 3};
 
 }  // namespace
 
@@ -56,7 +56,7 @@ TEST_CASE("hum: noise is not taken for it, nor another mains' frequency") {
 }
 
 TEST_CASE("hum: no line near a partial of the string") {
-  const auto hum = rosin::hum_effect({300.5, rate_Hz, 9000, 0.2, 0.6, 1}, 60);  // five times 60 is the fundamental
+  const auto hum = rosin::hum_effect({300.5, hum_rate_Hz, 9000, 0.2, 0.6, 1}, 60);  // five times 60 is the fundamental
   rosin::pluck_scene s;
   const std::vector<double> start(hum.parameters.size(), 0.0);
   hum.apply(s, start.data(), 0);
