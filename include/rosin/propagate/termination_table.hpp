@@ -35,14 +35,14 @@ public:
   [[nodiscard]] complex relative_admittance(double frequency_Hz) const { return at({1e-7 * std::abs(frequency_Hz) + 1e-6, 2 * std::numbers::pi * frequency_Hz}); }
   /// At any s with a positive real part.
   [[nodiscard]] complex at(complex s) const {
-    complex sum = 0;
-    const complex is = s * complex(0, 1);
+    complex by_level = 0, by_slope = 0;
+    const complex is(-s.imag(), s.real());
     for (std::size_t k = 1; k < w_.size(); ++k) {
       const double half = (w_[k] - w_[k - 1]) / 2, middle = w_[k - 1] + half, slope = (re_[k] - re_[k - 1]) / (2 * half), level = re_[k] - slope * w_[k];
       const complex minus = log_ratio(middle - is, half), plus = log_ratio(middle + is, half);
-      sum += level * (minus - plus) / complex(0, 2) + 0.5 * slope * s * (minus + plus);
+      by_level += level * (minus - plus), by_slope += slope * (minus + plus);
     }
-    return 2 / std::numbers::pi * sum + beyond(s);
+    return (by_level / complex(0, 1) + s * by_slope) / std::numbers::pi + beyond(s);
   }
   /// z at 0, step, 2 step, ... Hz, by two transforms: the even response of the real part, folded onto t > 0.
   [[nodiscard]] std::vector<complex> on_grid(double step_Hz, std::size_t count) const {
@@ -73,9 +73,16 @@ public:
 private:
   /// ln((m + h) / (m - h)): far from a piece by its series, to 1e-12 of it.
   [[nodiscard]] static complex log_ratio(complex m, double h) {
-    if (std::norm(m) < 400 * h * h) return std::log(m + h) - std::log(m - h);
-    const complex q = h / m, q2 = q * q;
-    return 2.0 * q * (1.0 + q2 * (1.0 / 3 + q2 * (1.0 / 5 + q2 * (1.0 / 7 + q2 / 9.0))));
+    const double square = m.real() * m.real() + m.imag() * m.imag();
+    if (square < 400 * h * h) return std::log(m + h) - std::log(m - h);
+    const double re = m.real() * h / square, im = -m.imag() * h / square, re2 = re * re - im * im, im2 = 2 * re * im;  // q = h / m, q^2
+    double a = 1.0 / 7 + re2 / 9, b = im2 / 9;  // 1 + q^2 (1/3 + q^2 (1/5 + q^2 (1/7 + q^2 / 9)))
+    for (const double next : {1.0 / 5, 1.0 / 3, 1.0}) {
+      const double up = next + a * re2 - b * im2;
+      b = a * im2 + b * re2;
+      a = up;
+    }
+    return {2 * (re * a - im * b), 2 * (re * b + im * a)};
   }
   friend outcome<table_termination> complete_admittance(std::span<const measured_admittance>, double, double);
   [[nodiscard]] complex beyond(complex s) const { return spring_s * s + (per_mass_per_s > 0 ? residual_mass()(s) : 0.0); }
