@@ -40,6 +40,16 @@ bool is_hum(const rosin::contact_hypothesis& h, const rig_diagnosis& d) {
   });
 }
 
+/// Without ripples that are left of the hum; nor does anything count that gains less than twice as much as they. Whether there were any.
+bool take_out_hum(rosin::contact_findings& found, const rig_diagnosis& d) {
+  double most = 0;
+  for (const auto& h : found.hypotheses)
+    if (h.gain > found.needed(h) && is_hum(h, d)) most = std::max(most, h.gain);
+  if (most == 0) return false;
+  std::erase_if(found.hypotheses, [&](const auto& h) { return found.stands(h) && (is_hum(h, d) || h.gain < 2 * most); });
+  return true;
+}
+
 /// The data that a statistic is taken from: what sticks, at one place or at two, or what slips.
 std::string data_of(const std::string& statistic) { return statistic == "friction-residual" ? statistic : "stick-fluctuation"; }
 
@@ -70,7 +80,7 @@ double least_further(const gains_so_far& sofar, const rosin::contact_hypothesis&
 bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_diagnosis& d) {
   if (sofar.empty())
     for (const auto& line : found.warnings) d.warnings.push_back(line);
-  if (std::erase_if(found.hypotheses, [&](const auto& h) { return h.gain > found.needed(h) && is_hum(h, d); }) > 0) {
+  if (take_out_hum(found, d)) {
     d.warnings.emplace_back("a ripple at a multiple of the mains' frequency: taken for what is left of the hum");
     found.as_declared = std::none_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return found.stands(h); });
   }
@@ -206,7 +216,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   gains_so_far gained;
   bool sticking = false;
   std::string first;  // statistic
-  const double excess = stick_excess(found);
+  double excess = stick_excess(found);
   for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
     const rosin::contact_hypothesis best = found.hypotheses.front();
     if (round == 0) {
@@ -219,8 +229,9 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     if (round > 0) settle_first(ask, declared, best, d.missing[others]);
     model = rosin::include(std::move(model), best);
     found = ask(model);
+    if (best.width_s > 0) excess = stick_excess(found);  // now seen at the average of both places, and much better
     if (first == data_of(first)) add_after(traces_of(first, found), *d.contact);
-    if (others == 0 && first == d.metric) d.after = left_in(first, found), d.noise_floor = floor_in(first, found);
+    if (others == 0 && data_of(first) == d.metric && (first == d.metric || round > 0)) d.after = left_in(d.metric, found), d.noise_floor = floor_in(d.metric, found);
   }
   const bool named = d.missing.size() > others;
   if (!named && others == 0 && !found.as_declared) judge_by(found.hypotheses.front().statistic, found, d);

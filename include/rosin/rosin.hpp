@@ -162,6 +162,7 @@
 
 #include <rosin/diagnose/bristle_yield.hpp>
 #include <rosin/diagnose/clock_drift_effect.hpp>
+#include <rosin/diagnose/contact_as_one.hpp>
 #include <rosin/diagnose/contact_bristles.hpp>
 #include <rosin/diagnose/contact_effects.hpp>
 #include <rosin/diagnose/contact_ripple.hpp>

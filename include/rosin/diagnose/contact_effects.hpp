@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/diagnose/contact_as_one.hpp>
 #include <rosin/diagnose/contact_bristles.hpp>
 #include <rosin/diagnose/contact_slip_effects.hpp>
 #include <rosin/diagnose/contact_stick_effects.hpp>
@@ -144,6 +145,8 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   if (takes.empty()) return out;
   for (auto& t : takes)
     if (model.edge_Hz > 0) t.edge_Hz = std::min(model.edge_Hz, t.edge_Hz > 0 ? t.edge_Hz : model.edge_Hz);
+  const auto one = as_one_contact(takes, model);
+  if (one) takes = one->takes;
   stick_bench sticks(takes, model);
   const auto& known = model.included;
   if (std::find(known.begin(), known.end(), "finite-contact-width") == known.end())

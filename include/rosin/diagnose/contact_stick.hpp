@@ -22,6 +22,8 @@ namespace rosin {
 /// Records, the samples that stick, and the equation as declared.
 class stick_bench {
 public:
+  static constexpr double passed_noise = 0.35;  ///< share of white noise's power that the window passes
+
   [[nodiscard]] static std::vector<stick_take> stick_takes(const std::vector<contact_take>& takes) {
     std::vector<stick_take> out;
     for (const auto& t : takes)
@@ -117,7 +119,7 @@ public:
 private:
   /// Half the disagreement of the two versions and the noise, through the window.
   [[nodiscard]] static double doubt(const contact_take& t) {
-    double square = 0.35 * t.velocity_sd_m_s * t.velocity_sd_m_s;  // share of white noise that the window passes
+    double square = passed_noise * t.velocity_sd_m_s * t.velocity_sd_m_s;
     if (t.velocity_near_m_s.size() == t.velocity_m_s.size() && t.velocity_far_m_s.size() == t.velocity_m_s.size()) {
       double sum = 0, count = 1;
       for (std::size_t i = 0; i < t.velocity_m_s.size(); ++i)

@@ -50,6 +50,7 @@ struct contact_model {
   std::optional<double> bristle_stiffness_N_m{}, bristle_delay_s{};
   bristle_yield yields{};
   std::optional<double> speed_ripple_Hz{}, normal_ripple_Hz{};
+  double width_s = 0;                                    ///< travel time of transverse waves over a contact of some width; 0: a point
   double edge_Hz = 0;                                    ///< beyond it noise takes over what is included; 0: nowhere
 };
 
@@ -81,6 +82,7 @@ struct contact_hypothesis {
   double fluctuation = 0;                      ///< what is left of the statistic: relative to the rod's speed, or to the force
   double noise = 0;                            ///< what the sensors' noise alone leaves of it, where that differs from the findings' floor; else 0
   double edge_Hz = 0;                          ///< band that its parameters are from, where that is narrower than the takes'; else 0
+  double width_s = 0;                          ///< travel time over the width, where that is the effect
   std::string statistic{};                     ///< "stick-fluctuation" or "friction-residual"
   bool decided = true;                         ///< the parameters are determined
   std::vector<contact_trace> before{}, after{};  ///< where that is not what the findings show of the models with and without it
@@ -98,6 +100,7 @@ struct contact_hypothesis {
   };
   model.included.push_back(found.effect);
   if (found.edge_Hz > 0) model.edge_Hz = found.edge_Hz;
+  if (found.width_s > 0) model.width_s = found.width_s;
   if (found.effect == "torsion") model.torsion = torsion_values{value("speed_ratio"), value("impedance_ratio"), value("q")};
   if (found.effect == "rod-resonance") model.rod = {value("frequency_Hz"), value("q"), value("mass_kg")};
   if (found.effect == "elasto-plastic-friction") {

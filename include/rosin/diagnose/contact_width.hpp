@@ -63,6 +63,27 @@ public:
     return std::sqrt(power / steps * 2 * window.edge_Hz / take_.rate_Hz);
   }
 
+  /// Of both places at a frequency: the centre's mean velocity as it would be if one contact's torsion turned it under the force of both
+  /// (columns F_1, F_2), and that force.
+  [[nodiscard]] std::array<complex, 4> as_one(double f, double half_delay_s, const torsion_values& values, torsion_damping damping, const torsion_at_contact& single) const {
+    if (f == 0) return {0, 0, 1, 1};
+    const auto row = passage(f, half_delay_s, rolling(half_delay_s, values, damping));
+    std::array<complex, 4> out;
+    for (const std::size_t side : {0U, 1U}) {
+      out[2 + side] = row[4 + side] / complex(0, 2 * std::numbers::pi * f * stick_record::compliance_unit);
+      out[side] = 0.5 * (row[side] + row[2 + side]) - single(f) * out[2 + side];
+    }
+    return out;
+  }
+  /// A row of such columns as a signal, from 0 to `edge_Hz`.
+  template <class Row>
+  [[nodiscard]] std::vector<double> signal_of(const Row& row, double edge_Hz) {
+    constexpr smooth_window flat{1e15};
+    std::vector<double> out = near_.through(flat, [&](double f) { return f < edge_Hz ? row(f)[0] : complex(0); });
+    detail::add_to(out, far_.through(flat, [&](double f) { return f < edge_Hz ? row(f)[1] : complex(0); }));
+    return out;
+  }
+
   /// Up to where both places can be told apart: their sum has its first pole at 1 / (4 d).
   [[nodiscard]] static smooth_window below_pole(const smooth_window& window, double half_delay_s) noexcept {
     return {half_delay_s > 0 ? std::min(window.edge_Hz, 0.22 / half_delay_s) : window.edge_Hz};
@@ -263,6 +284,7 @@ struct settled_width {
   const double one_way = takes[0].delay_s[0] + takes[0].delay_s[1], metres = takes[0].length_m > 0 ? takes[0].length_m / one_way : 0;
   const double doubt = 0.02 + 2e-7 / best;  // of what rolling and near field do between the two places
   h.parameters = {{metres > 0 ? "width_m" : "width_s", 2 * best * (metres > 0 ? metres : 1.0), 2 * best * doubt * (metres > 0 ? metres : 1.0)}};
+  h.width_s = 2 * best;
   h.decided = best > 5e-7 && wide_fit.solution.scale < 0.7 * point_fit.solution.scale && h.fluctuation < 0.07;  // both really stick
   return h;
 }
