@@ -149,7 +149,8 @@ private:
     for (std::size_t c = 0; c < 2; ++c) noise_[c] = std::min({noise_[c], before.quality.noise[c], tried.quality.noise[c]});
     const comparison c = compare(before, tried);
     if (round == 0) d_.base = before, all_there_was_ = c.was;
-    const bool worth = round == 0 || (c.left < c.was / 3 && c.was > 1e-4 * all_there_was_);
+    // Beside a strong effect its own model's faults are worth something to others as well; but these leave most of them.
+    const bool worth = round == 0 || (c.left < c.was / 3 && (c.was > 1e-4 * all_there_was_ || c.left < c.was / 30));
     for (const scene_fit& f : fits)
       if (worth || &f == &tried) rank(f, c);
     if (round == 0) rank(before, c);
