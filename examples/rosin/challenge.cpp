@@ -3,6 +3,7 @@
 // rosin challenge: rigs in which physics is hidden, diagnosed from their folders alone, and scored.
 //
 #include "calibration_file.hpp"
+#include "challenge_forces.hpp"
 #include "challenge_rig.hpp"
 #include "challenge_score.hpp"
 #include "commands.hpp"
@@ -27,12 +28,13 @@ struct options {
   std::uint64_t seed = 1;
   int count = 0, effects = 1;
   double strength = 1, noise_dB = 0;
-  bool only_make = false, leave_out = false, json = false;
+  bool only_make = false, leave_out = false, forces = false, json = false;
 };
 
 struct places {
-  fs::path rigs, truth, diagnoses;
-  places(const fs::path& root, bool leave_out) : rigs{root / "rigs"}, truth{root / "truth"}, diagnoses{root / (leave_out ? "diagnoses-left-out" : "diagnoses")} {}
+  fs::path rigs, truth, diagnoses, forces;
+  places(const fs::path& root, bool leave_out)
+      : rigs{root / "rigs"}, truth{root / "truth"}, diagnoses{root / (leave_out ? "diagnoses-left-out" : "diagnoses")}, forces{root / "forces"} {}
 };
 
 std::string describe(const options& o) {
@@ -61,8 +63,8 @@ std::optional<rosin::failure> make(const options& given, const places& to, std::
     if (seed % shards != shard) continue;
     const auto rig = draw_challenge({seed, given.effects, given.strength, given.noise_dB, given.effect});
     const auto truth = to.truth / (rig.name + ".json");
-    if (fs::exists(truth)) continue;
-    if (auto why = write_challenge(rig, to.rigs / rig.name, true)) return why;
+    if (fs::exists(truth) && (!given.forces || fs::exists(true_forces(to.truth, rig.name, "bow-1")))) continue;
+    if (auto why = write_challenge(rig, to.rigs / rig.name, true, given.forces ? to.truth : fs::path{})) return why;
     if (auto why = save_json(truth.string(), truth_of(rig), false)) return why;
   }
   return std::nullopt;
@@ -102,6 +104,24 @@ void diagnose_all(const places& at, bool leave_out, const provenance& from, std:
   }
 }
 
+/// Reconstructs the strokes of every rig that has a diagnosis and whose true forces are there, as declared and as diagnosed.
+void reconstruct_all(const places& at, const provenance& from, std::size_t shard, std::size_t shards) {
+  std::error_code error;
+  fs::create_directories(at.forces, error);
+  std::vector<fs::path> diagnoses;
+  for (const auto& entry : fs::directory_iterator(at.diagnoses)) diagnoses.push_back(entry.path());
+  std::sort(diagnoses.begin(), diagnoses.end());
+  progress bar{"reconstructing", diagnoses.size()};
+  for (std::size_t i = 0; i < diagnoses.size(); ++i, bar.step()) {
+    const std::string name = diagnoses[i].stem().string();
+    const auto file = at.forces / diagnoses[i].filename();
+    if (part_of(name, shards) != shard || fs::exists(file)) continue;
+    const auto errors = force_errors(at.rigs / name, at.truth, diagnoses[i].string(), from);
+    if (errors.empty()) continue;
+    if (const auto why = save_json(file.string(), errors, false)) std::cerr << "rosin: " << why->message << '\n';
+  }
+}
+
 std::vector<rig_score> score_all(const places& at) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(at.diagnoses)) files.push_back(entry.path());
@@ -114,6 +134,7 @@ std::vector<rig_score> score_all(const places& at) {
     if (diagnosis.is_discarded() || hidden.is_discarded()) continue;
     out.push_back(score(hidden, diagnosis));
     out.back().seconds = diagnosis.value("seconds", 0.0);
+    if (std::ifstream forces{at.forces / file.filename()}) add_forces(json::parse(forces, nullptr, false), out.back());
   }
   return out;
 }
@@ -129,8 +150,9 @@ exit_code run(const options& given, const provenance& from) {
   if (const auto why = make(given, at, shard, shards)) return fail(why->message, given.json);
   if (given.only_make) return exit_code::ok;
   diagnose_all(at, given.leave_out, from, shard, shards);
+  if (given.forces) reconstruct_all(at, from, shard, shards);
   const auto scores = score_all(at);
-  const auto page = given.leave_out ? left_out_to_markdown(scores, describe(given)) : to_markdown(scores, describe(given));
+  const auto page = given.leave_out ? left_out_to_markdown(scores, describe(given)) : to_markdown(scores, describe(given)) + forces_to_markdown(scores);
   if (const auto why = rosin::write_file((fs::path{given.out} / (given.leave_out ? "left-out.md" : "challenge.md")).string(), rosin::overwrite::allow, [&](std::ostream& o) { o << page; }))
     return fail(why->message, given.json);
   if (given.json) print(to_json(scores));
@@ -153,6 +175,7 @@ void add_challenge(CLI::App& app, exit_code& result) {
   command->add_option("--shard", given->shard, "The K-th of N parts: every N-th rig")->type_name("K/N")->capture_default_str();
   command->add_flag("--leave-out", given->leave_out, "Diagnosed by a catalogue that does not know what is hidden: it should say so (left-out.md)");
   command->add_flag("--only-make", given->only_make, "Make the rigs, diagnose nothing");
+  command->add_flag("--forces", given->forces, "Keep the strokes' true forces, and reconstruct them as declared and as diagnosed (forces/)")->excludes("--leave-out");
   add_json_option(*command, given->json);
   command->footer(
       "The rigs are stepped mode by mode, with beads, fingers, supports and the contact solved for in every step; nothing of\n"

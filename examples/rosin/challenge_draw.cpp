@@ -169,7 +169,10 @@ challenge_rig draw_challenge(const challenge_choice& choice) {
   for (const auto& name : names) hide(name, r, s, choice.strength);
   const double peak = r.base.declared.pluck_N[0] * std::max(r.base.position, 1 - r.base.position);
   if (choice.noise_dB > 0) r.base.noise_N = peak * std::pow(10, -choice.noise_dB / 20);
-  for (std::size_t c = 0; c < 2; ++c) r.converters[c].gain = r.base.gain[c], r.converters[c].noise_N = r.base.noise_N;
+  for (std::size_t c = 0; c < 2; ++c) {
+    r.converters[c].gain = r.base.gain[c], r.converters[c].noise_N = r.base.noise_N;
+    for (auto& line : r.converters[c].hum) line.amplitude_N *= r.base.gain[c];  // a force that is not there, as the sensor sees it
+  }
   return r;
 }
 

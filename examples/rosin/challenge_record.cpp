@@ -7,7 +7,7 @@
 #include <rosin/acquire/signal_checks.hpp>
 #include <rosin/adapt/audio_sndfile.hpp>
 #include <rosin/friction/elasto_plastic.hpp>
-#include <rosin/report/output_file.hpp>
+#include <rosin/report/csv.hpp>
 #include <rosin/simulate/modal_decimator.hpp>
 
 namespace tool {
@@ -32,6 +32,7 @@ struct unsteady_rod {
 struct played {
   std::string name;
   std::array<std::vector<double>, 2> force_N;  ///< as the converters get them
+  std::vector<double> contact_force_N{}, contact_velocity_m_s{};  ///< of a stroke, through the same low-pass
 };
 
 class player {
@@ -63,7 +64,11 @@ public:
     };
     auto steps = rig_.bristles_N_m > 0 ? run(bristles(i)) : rig_.creeps ? run(rosin::creep{rig_.base.steady_friction, *rig_.creeps}) : std::visit(run, rig_.base.law);
     if (rig_.detuning != 0) mix(steps, {});
-    return finish("bow-" + std::to_string(i + 1), std::move(steps));
+    auto force = decimate_.lines(steps.force_N), velocity = decimate_.points(steps.centre_m_s), rate = decimate_.slopes(steps.force_N);
+    for (std::size_t n = 0; n < velocity.size(); ++n) velocity[n] += steps.centre_left_out_m_N * rate[n];
+    auto out = finish("bow-" + std::to_string(i + 1), std::move(steps));
+    out.contact_force_N = std::move(force), out.contact_velocity_m_s = std::move(velocity);
+    return out;
   }
 
 private:
@@ -91,6 +96,14 @@ private:
 
 std::string number(double x, const char* form) { return rosin::detail::figure(x, form); }
 
+rosin::table motion_of(const played& take, const std::string& rig) {
+  rosin::table out{{"truth of take " + take.name + ", " + rig}, {}};
+  std::vector<double> time_s(take.contact_force_N.size());
+  for (std::size_t n = 0; n < time_s.size(); ++n) time_s[n] = static_cast<double>(n) / 128000;
+  out.add("time_s", std::move(time_s)), out.add("force_N", take.contact_force_N), out.add("velocity_m_s", take.contact_velocity_m_s);
+  return out;
+}
+
 std::string rig_text(const challenge_rig& r, const std::array<double, 2>& full_scale_N) {
   const auto& d = r.base.declared;
   std::string out = "schema = 1\ntitle = \"" + r.name + "\"\n\n[string]\nlength_m = " + number(d.string.length_m, "%.5f") + "\ntension_N = " + number(d.string.tension_N, "%.2f") +
@@ -116,7 +129,9 @@ std::string rig_text(const challenge_rig& r, const std::array<double, 2>& full_s
 
 }  // namespace
 
-std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const fs::path& folder, bool force) {
+std::filesystem::path true_forces(const fs::path& truth, const std::string& rig, const std::string& take) { return truth / (rig + "." + take + ".csv"); }
+
+std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const fs::path& folder, bool force, const fs::path& truth) {
   const player play{rig};
   std::vector<played> takes;
   for (std::size_t i = 0; i < rig.base.plucks.size(); ++i) takes.push_back(play.pluck(i));
@@ -144,6 +159,9 @@ std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const fs
     if (const auto& [pluck, first, count] = rig.lost; count > 0 && take.name == "pluck-" + std::to_string(pluck + 1))
       for (auto& column : out.channels) column.erase(column.begin() + static_cast<std::ptrdiff_t>(first), column.begin() + static_cast<std::ptrdiff_t>(first + count));
     if (auto why = rosin::write_audio((folder / (take.name + ".wav")).string(), out, existing)) return why;
+    if (truth.empty() || take.contact_force_N.empty()) continue;
+    const auto true_motion = motion_of(take, rig.name);
+    if (auto why = rosin::save_csv(true_forces(truth, rig.name, take.name).string(), true_motion, existing)) return why;
   }
   const auto text = rig_text(rig, full_scale);
   return rosin::write_file((folder / "rig.toml").string(), existing, [&](std::ostream& o) { o << text; });

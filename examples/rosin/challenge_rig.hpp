@@ -78,8 +78,10 @@ inline double place(rosin::gaussian_source& s, const challenge_rig& r) {
 /// One of these, hidden; nothing if it is none.
 [[nodiscard]] std::optional<hidden_effect> hidden_on_request(const std::string& name, challenge_rig& rig, rosin::gaussian_source& source, double strength);
 [[nodiscard]] challenge_rig draw_challenge(const challenge_choice& choice);
-/// Plays all takes and writes folder/rig.toml with its recordings; a reason if that cannot be done.
-[[nodiscard]] std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const std::filesystem::path& folder, bool force);
+/// Plays all takes and writes folder/rig.toml with its recordings, and the strokes' true_forces unless `truth` is empty; a reason if that cannot be done.
+[[nodiscard]] std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const std::filesystem::path& folder, bool force, const std::filesystem::path& truth);
+/// Where force and velocity under the bow of one stroke are: a table as `rosin compare` reads it.
+[[nodiscard]] std::filesystem::path true_forces(const std::filesystem::path& truth, const std::string& rig, const std::string& take);
 [[nodiscard]] json truth_of(const challenge_rig& rig);
 
 }  // namespace tool

@@ -88,13 +88,19 @@ rig_score score(const json& truth, const json& diagnosis) {
   return s;
 }
 
+void add_forces(const json& errors, rig_score& s) {
+  if (!errors.is_object()) return;
+  for (const auto& [take, e] : errors.items())
+    if (e.contains("before") && e.contains("after")) s.forces.emplace_back(e.at("before"), e.at("after"));
+}
+
 json to_json(const std::vector<rig_score>& scores) {
   json out = json::array();
   for (const auto& s : scores) {
     json parameters = json::array();
     for (const auto& p : s.parameters) parameters.push_back({{"effect", p.effect}, {"name", p.name}, {"error", p.error}, {"covered", p.has_interval ? json(p.covered) : json(nullptr)}});
     out.push_back({{"name", s.name}, {"hidden", s.hidden}, {"named", s.named}, {"verdict", s.verdict}, {"right", s.right}, {"place_right", s.has_place ? json(s.place_right) : json(nullptr)},
-                   {"parameters", parameters}, {"held_out_over_floor", s.held_out_over_floor}, {"seconds", s.seconds}});
+                   {"parameters", parameters}, {"forces", s.forces}, {"held_out_over_floor", s.held_out_over_floor}, {"seconds", s.seconds}});
   }
   return out;
 }
@@ -118,6 +124,23 @@ std::string left_out_to_markdown(const std::vector<rig_score>& scores, const std
     std::string wrong;
     for (const auto& [name, count] : instead) wrong += (wrong.empty() ? "" : ", ") + (count > 1 ? std::to_string(count) + " x " : std::string{}) + name;
     out += "| " + hidden + " | " + share(unexplained, rigs.size()) + " | " + std::to_string(unseen) + " | " + wrong + " |\n";
+  }
+  return out;
+}
+
+std::string forces_to_markdown(const std::vector<rig_score>& scores) {
+  std::map<std::string, std::vector<std::pair<double, double>>> by;
+  for (const auto& s : scores)
+    if (!s.forces.empty()) by[joined(s.hidden, "nothing")].insert(by[joined(s.hidden, "nothing")].end(), s.forces.begin(), s.forces.end());
+  if (by.empty()) return {};
+  std::string out = "\nError of the reconstructed force against the true one (Delta of Eq. (12) up to 20 kHz, after one common scale):\n\n"
+                    "| hidden | strokes | as declared, median | as diagnosed, median | worst | larger than as declared by a tenth |\n|---|---|---|---|---|---|\n";
+  for (const auto& [hidden, strokes] : by) {
+    std::vector<double> before, after;
+    std::size_t worse = 0;
+    for (const auto& [b, a] : strokes) before.push_back(b), after.push_back(a), worse += a > 1.1 * b;
+    out += "| " + hidden + " | " + std::to_string(strokes.size()) + " | " + figure(median(before), "%.2g") + " | " + figure(median(after), "%.2g") + " | " +
+           figure(*std::max_element(after.begin(), after.end()), "%.2g") + " | " + std::to_string(worse) + " |\n";
   }
   return out;
 }

@@ -4,18 +4,14 @@
 // one and the same low-pass.
 //
 #include "commands.hpp"
+#include "compare_columns.hpp"
 #include "provenance.hpp"
 
 #include <rosin/acquire/signal_checks.hpp>
-#include <rosin/condition/low_pass.hpp>
-#include <rosin/propagate/band.hpp>
-#include <rosin/reconstruct/consistency.hpp>
 #include <rosin/report/csv.hpp>
 
 #include <iostream>
 #include <memory>
-#include <numeric>
-#include <span>
 
 namespace tool {
 
@@ -26,59 +22,6 @@ struct options {
   std::optional<double> pass_Hz, stop_Hz, at_most;
   bool json = false;
 };
-
-/// One column of both files, without its mean, which AC-coupled sensors do not know.
-struct compared {
-  std::string name;
-  double scale = 1;        ///< result = scale * truth, by least squares
-  double delta = 0;        ///< Eq. (12) as they are
-  double delta_scaled = 0; ///< Eq. (12) after division by the scale
-  double rms_truth = 0, rms_error = 0, worst = 0;  ///< of the truth, and of the difference after division by the scale
-};
-
-struct stretch {
-  std::size_t begin = 0, end = 0;
-};
-
-/// From the first to the last row in which both columns hold a value.
-stretch known_in_both(std::span<const double> a, std::span<const double> b) {
-  stretch out{0, a.size()};
-  const auto known = [&](std::size_t i) { return std::isfinite(a[i]) && std::isfinite(b[i]); };
-  while (out.begin < out.end && !known(out.begin)) ++out.begin;
-  while (out.end > out.begin && !known(out.end - 1)) --out.end;
-  for (std::size_t i = out.begin; i < out.end; ++i)
-    if (!known(i)) return {};
-  return out;
-}
-
-compared compare_columns(const std::string& name, const std::vector<double>& result, const std::vector<double>& truth, double rate_Hz,
-                         const rosin::band& window) {
-  const auto known = known_in_both(result, truth);
-  const auto margin = static_cast<std::size_t>(std::ceil(4 * rate_Hz / (window.stop_Hz - window.pass_Hz)));
-  if (known.end - known.begin < 4 * margin) return {.name = name};
-  const auto within = [&](const std::vector<double>& x) {
-    const auto filtered = rosin::low_pass<double>(std::span{x}.subspan(known.begin, known.end - known.begin), rate_Hz, window);
-    std::vector<double> kept(filtered.begin() + static_cast<std::ptrdiff_t>(margin), filtered.end() - static_cast<std::ptrdiff_t>(margin));
-    const double mean = std::accumulate(kept.begin(), kept.end(), 0.0) / static_cast<double>(kept.size());
-    for (double& value : kept) value -= mean;
-    return kept;
-  };
-  auto r = within(result);
-  const auto t = within(truth);
-  compared out{.name = name, .delta = rosin::consistency_delta(r, t)};
-  double rt = 0, tt = 0, ee = 0;
-  for (std::size_t i = 0; i < t.size(); ++i) rt += r[i] * t[i], tt += t[i] * t[i];
-  if (rt > 0 && tt > 0) out.scale = rt / tt;
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    r[i] /= out.scale;
-    ee += (r[i] - t[i]) * (r[i] - t[i]);
-    out.worst = std::max(out.worst, std::abs(r[i] - t[i]));
-  }
-  out.delta_scaled = rosin::consistency_delta(r, t);
-  out.rms_truth = std::sqrt(tt / static_cast<double>(t.size()));
-  out.rms_error = std::sqrt(ee / static_cast<double>(t.size()));
-  return out;
-}
 
 /// The take that the comments of a table name; empty if none.
 std::string take_of(const rosin::table& t) {
@@ -149,8 +92,7 @@ exit_code run(const options& given, provenance from) {
     if (const auto why = from.add_input(*file)) return fail(why->message, given.json);
   const auto rate = common_rate(given, *result, *truth);
   if (!rate) return fail(rate.error(), given.json);
-  const double pass = given.pass_Hz.value_or(std::min(20000.0, 0.3 * *rate));
-  const rosin::band window{pass, given.stop_Hz.value_or(std::min(1.5 * pass, (pass + *rate / 2) / 2))};
+  const rosin::band window = compared_band(*rate, given.pass_Hz, given.stop_Hz);
   if (!(window.stop_Hz > window.pass_Hz)) return fail("--stop must be above --pass", given.json);
   const auto columns = compare(given, *result, *truth, *rate, window);
   if (!columns) return fail(columns.error(), given.json);

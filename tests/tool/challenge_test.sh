@@ -34,6 +34,21 @@ expect 0 challenge --out b
 says "Named right: 1/2" "95 % intervals that cover: 0/1" "skew_s 2 %" "mains-hum" "| channel-skew |" "median: 1.1"
 same "$(cat b/challenge.md)" "$out"
 
+# The true forces of strokes, and what a reconstruction makes of them: the same as declared and as diagnosed where nothing is said to be missing.
+expect 0 challenge --out forces --seed 7 --count 1 --effects 0 --only-make --forces
+same "$(ls forces/truth | tr '\n' ' ')" "challenge-700000.bow-1.csv challenge-700000.bow-2.csv challenge-700000.json "
+mkdir -p forces/diagnoses
+echo '{"verdict": "no-mismatch", "missing": [], "fit": {"metric": "", "after": null, "noise_floor": 0}}' >forces/diagnoses/challenge-700000.json
+expect 0 challenge --out forces --forces
+says "Named right: 1/1" "Error of the reconstructed force" "| nothing | 2 |"
+perl -MJSON::PP -e '
+  local $/;
+  my %said = %{ decode_json(<STDIN>) };
+  for (values %said) { die "before $_->{before}, after $_->{after}\n" unless $_->{before} == $_->{after} && $_->{before} > 0 && $_->{before} < 0.05 }' \
+  <forces/forces/challenge-700000.json
+expect 0 reconstruct forces/rigs/challenge-700000 --take bow-1 --out forces/bow-1.csv
+expect 0 compare forces/bow-1.csv forces/truth/challenge-700000.bow-1.csv --at-most 0.05
+
 # A part is a part of the names, whatever else is in the folder: three rigs that cannot even be read.
 for n in 1 3 4; do mkdir -p parts/rigs/rig-$n; echo "schema = 1" >parts/rigs/rig-$n/rig.toml; done
 expect 0 challenge --out parts --shard 2/2
