@@ -60,6 +60,29 @@ TEST_CASE("a stiffness that was not declared is found behind a sensor that rings
   CHECK(d->after < 1.05 * d->floor);
 }
 
+TEST_CASE("a channel that comes a little late is found beside a bead that leaves a hundred thousand times as much") {
+  const auto layout = test::two_plucks({});
+  const rosin::string_facts facts{659.69, 128e3, 60e3, 0.175, 0.314, 2};
+  auto bead = rosin::point_mass_effect(facts);
+  const std::vector<rosin::pluck_effect> both{bead, rosin::skew_effect(facts)};
+  constexpr double place = 0.526, mass_kg = 8e-6, late_s = 0.7e-6;
+  std::erase_if(bead.starts, [](const auto& start) { return std::abs(start[0] - place) > 0.06; });
+  std::vector<double> values{place, bead.parameters[1].logarithmic ? std::log(mass_kg) : mass_kg};
+  for (std::size_t k = values.size(); k < bead.parameters.size(); ++k) values.push_back(0);
+  values.push_back(late_s);
+  const Eigen::VectorXd v = test::values_of(layout, values);
+  std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, both, v, 0, 3e-4, 1), test::scene_pluck(layout, both, v, 1, 3e-4, 2)};
+  takes[1].strength_N = 0.5;
+  const auto d = rosin::diagnose_plucks(takes, {}, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result&) {
+    return std::vector<rosin::pluck_effect>{bead, rosin::skew_effect(facts), rosin::crosstalk_effect(facts)};
+  });
+  REQUIRE_MESSAGE(d, d.error());
+  REQUIRE(d->best.effects.size() == 2);
+  CHECK(d->explained);
+  for (const rosin::pluck_effect& e : d->best.effects) CHECK((e.id() == "point-mass" || e.id() == "channel-skew"));
+  CHECK(d->after < 1.05 * d->floor);
+}
+
 TEST_CASE("a clock that wavers is a mismatch, though nothing of it shows at the partials, and nothing in the catalogue is it") {
   const auto wavering = [](double force_N, std::uint64_t seed) {
     auto take = test::modal_pluck(force_N, seed);
