@@ -140,7 +140,7 @@ inline void report_hum(take_check& out, channel_check& c, const take_signals& fr
     const bool bearable = s.sensor.quantity != quantity::termination_force && samples_in(cut) * 1000 < s.values.size();
     report_spans(out, from, s.sensor.name, cut, "clipping", "clipped at " + figure(c.of_full_scale, "%.3f") + " of full scale",
                  "lower the gain and record again", bearable ? severity::warning : severity::error);
-    report_spans(out, from, s.sensor.name, dropouts(s.values, step), "dropouts", "samples were lost (value held or zero)",
+    report_spans(out, from, s.sensor.name, dropouts(s.values, step, cut), "dropouts", "samples were lost (value held or zero)",
                  "check the recorder's buffers and the disk, and record again");
     check_offset(out, s, c, quiet);
   }

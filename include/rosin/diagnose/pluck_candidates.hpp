@@ -257,14 +257,19 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
 
 }  // namespace detail
 
-/// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and what best takes its
-/// place is kept if the evidence of the whole rises by more than `nats`.
+/// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and stays out if the evidence
+/// is higher without it; what best takes its place is kept if the evidence of the whole rises by more than `nats`.
 [[nodiscard]] inline scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats, std::array<double, 2> noise) {
-  const std::size_t count = fit.effects.size();
+  std::size_t count = fit.effects.size();
   for (std::size_t tried = 0, k = 0; tried < count && count > 1; ++tried, k = (k + 1) % count) {
     scene_fit rest = detail::without(data, fit, k);
     rest = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true}}, noise);
     if (!(detail::cost_of(rest, noise) < 1e299)) continue;
+    if (detail::price_of(rest, noise) < detail::price_of(fit, noise)) {
+      fit = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true, freedom::all}}, noise);
+      --count, tried = 0, k = 0;
+      continue;
+    }
     std::vector<pluck_effect> catalogue;
     for (const pluck_effect& e : all)
       if (std::none_of(rest.effects.begin(), rest.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);

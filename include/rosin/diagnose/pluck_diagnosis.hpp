@@ -82,6 +82,7 @@ public:
   void run(int most_effects) {
     for (int round = 0; round < most_effects && add_one(round); ++round) {}
     d_.best = exchanged(d_.data, now_, all_, 1, noise_);
+    if (d_.found_gain.size() > d_.best.effects.size()) d_.found_gain.resize(d_.best.effects.size());
     if (d_.best.effects.empty()) d_.best = d_.base;
     std::sort(d_.ranking.begin(), d_.ranking.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
     if (d_.ranking.empty()) return;

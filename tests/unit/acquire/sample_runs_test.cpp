@@ -76,6 +76,19 @@ TEST_CASE("held and zeroed samples are dropouts") {
   CHECK(rosin::dropouts(zeroed, step)[0].count == 4);
 }
 
+TEST_CASE("what is cut off is held at full scale, and no dropout") {
+  auto x = sine(0.9, 100, 1e-3);
+  for (std::size_t i = 4060; i < 4066; ++i) x[i] = -1;
+  x[4059] = -0.99, x[4066] = -0.7;
+  REQUIRE(rosin::dropouts(x, step).size() == 1);
+  const auto cut_off = rosin::clipped(x, step, 1.0);
+  REQUIRE(cut_off.size() == 1);
+  CHECK(rosin::dropouts(x, step, cut_off).empty());
+  for (std::size_t i = 5011; i < 5041; ++i) x[i] = x[5010];
+  REQUIRE(rosin::dropouts(x, step, cut_off).size() == 1);
+  CHECK(rosin::dropouts(x, step, cut_off)[0].first == 5010);
+}
+
 TEST_CASE("what repeats by nature is no dropout") {
   for (const double period : {20.0, 100.0, 3000.0})
     for (const double noise : {0.0, 3e-5, 1e-3}) {

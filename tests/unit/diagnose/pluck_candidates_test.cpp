@@ -22,3 +22,18 @@ TEST_CASE("of several effects the one that is there comes first") {
   CHECK(std::exp(fits[0].value[layout.size()]) == doctest::Approx(21e3).epsilon(1e-4));
   CHECK(std::exp(fits[0].value[layout.size() + 1]) == doctest::Approx(14).epsilon(1e-3));
 }
+
+TEST_CASE("an effect that a later one has made needless is given up") {
+  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::pluck_options options{.internal_loss = false};
+  const auto layout = test::two_plucks(options);
+  const rosin::pluck_effect late = rosin::skew_effect(facts), cross = rosin::crosstalk_effect(facts);
+  constexpr std::array<double, 2> noise{3e-4, 3e-4};
+  rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
+  for (std::size_t t = 0; t < 2; ++t) data.takes.push_back(test::scene_pluck(layout, {late}, test::values_of(layout, {2e-6}), t, noise[0], 3 + t));
+  const auto both = rosin::fit_scene(data, {cross, late}, test::values_of(layout, {1e-5, 2e-6}), {{}}, noise);
+  const auto kept = rosin::exchanged(data, both, {late, cross}, 1, noise);
+  REQUIRE(kept.effects.size() == 1);
+  CHECK(kept.effects[0].id() == "channel-skew");
+  CHECK(kept.value[layout.size()] == doctest::Approx(2e-6).epsilon(0.01));
+}
