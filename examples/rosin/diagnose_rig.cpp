@@ -3,6 +3,7 @@
 // Plucks first: what do they say of string, ends, wire and sensors? Then the strokes, reconstructed with that: tension and contact.
 //
 #include "diagnose_parts.hpp"
+#include "rig_ends.hpp"
 
 namespace tool {
 
@@ -157,6 +158,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   d.title = rig.title.value_or(rig.file);
   const rosin::rig_values values = rosin::values_of(rig);
   d.assumed = values.assumed;
+  if (any_end_moves(rig)) d.warnings.push_back(rig.file + ": terminations: both ends are taken for rigid, so that what is declared of them comes out as support-resonance");
   const auto plucks = diagnose_plucks_of(rig, values, from, d.warnings, without);
   step();
   if (!plucks) return rosin::failure{plucks.error()};

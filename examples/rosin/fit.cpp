@@ -108,6 +108,7 @@ exit_code run(const options& given, provenance from) {
   const auto fitted = calibrate(folder->rig, from, !given.report.empty());
   if (!fitted) return fail(fitted.error(), as_json);
   std::vector<std::string> said;
+  if (!given.header.path.empty() && any_end_moves(folder->rig)) said.emplace_back("header: the streaming reconstruction takes both ends for rigid; [terminations] is not in it");
   if (!given.header.path.empty())
     if (const auto why = write_header(given.header, given.force, set_of(*fitted), from, said)) return fail(why->message, as_json);
   const exit_code done = deliver(*fitted, given, from, print_text);

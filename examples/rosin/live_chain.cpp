@@ -98,6 +98,7 @@ rosin::outcome<live_chain> live_chain::design(const rosin::rig& rig, const take_
   const auto limits = band_of(how, format.sample_rate_Hz);
   if (!limits) return rosin::failure{limits.error()};
   live_chain out;
+  if (any_end_moves(rig)) out.remarks_.push_back(rig.file + ": terminations: live, both ends are taken for rigid; rosin reconstruct knows better");
   rosin::calibration at;
   out.place(rig, set, at, *declared);
   if (!std::isfinite(at.at.impedance_Ns_m)) return rosin::failure{set.from + ": the impedance is not known, so there is no velocity"};

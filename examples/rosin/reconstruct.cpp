@@ -138,8 +138,8 @@ void add_reconstruct(CLI::App& app, exit_code& result) {
   command->add_option("--take", given->take, "Name of the bowed take")->required()->type_name("NAME");
   add_table_options(*command, given->output);
   command->get_option("--out")->required(false)->description("Table to write, one row a sample; - for standard output");
-  command->add_option("--pass", given->how.pass_Hz, "End of the pass band; 0.30 of the sampling rate if not given")->type_name("HZ")->check(CLI::PositiveNumber);
-  command->add_option("--stop", given->how.stop_Hz, "Nothing is left from here on; 0.45 of the sampling rate")->type_name("HZ")->check(CLI::PositiveNumber);
+  command->add_option("--pass", given->how.pass_Hz, "End of the pass band; 0.30 of the sampling rate, or two thirds of --stop, if not given")->type_name("HZ")->check(CLI::PositiveNumber);
+  command->add_option("--stop", given->how.stop_Hz, "Nothing is left from here on; 0.45 of the sampling rate, or 1.5 times --pass, if not given")->type_name("HZ")->check(CLI::PositiveNumber);
   command->add_flag("--no-fine-tune", given->no_fine_tune, "Leave delays and gains as the plucks gave them");
   command->add_flag("--paper", given->how.paper, "The processing of Woodhouse, Schumacher & Garoff (2000), for comparison");
   command->add_flag("--frequency-domain", given->how.frequency_domain, "Eqs. (10): the most nearly periodic stretch only, terminations as declared");

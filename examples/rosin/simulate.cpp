@@ -243,7 +243,7 @@ void add_simulate(CLI::App& app, exit_code& result) {
   add_force_option(*command, given->force);
   add_json_option(*command, given->json);
   command->footer(
-      "Plucks, quiet and bowed takes of a stiff string between ends that are rigid or move as [terminations] says (modes), with\n"
+      "Plucks, quiet and bowed takes of a stiff string between ends that are rigid or move as [terminations] says (modes, or a file of admittance), with\n"
       "torsion and the law of friction that [model] and [friction] name; sensors whose gains are off within their tolerances, noise, AC coupling and converters.\n"
       "[simulate] sets rate, duration, bits, noise, seed, and with nominal_scatter = true lets the string differ from what the\n"
       "file declares. The rig.toml beside the recordings tells none of that; the truth goes to another folder.");

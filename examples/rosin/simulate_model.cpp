@@ -199,8 +199,8 @@ rosin::rig with_model(rosin::rig rig, const diagnosed_model& model) {
       if (const auto area = given("area_per_newton_m2"); area && take.normal_force_N && !rig.friction->contact_radius_m)
         rig.friction->contact_radius_m = std::sqrt(*area * *take.normal_force_N / std::numbers::pi);
   }
-  for (auto* end : {&rig.near, &rig.far})  // what the fit found there is among the effects
-    if (*end && (*end)->kind == rosin::termination::form::fit) (*end)->kind = rosin::termination::form::rigid;
+  for (auto* end : {&rig.near, &rig.far})  // a diagnosis begins with rigid ends: what moves there is among its effects
+    if (*end) (*end)->kind = rosin::termination::form::rigid;
   auto how = rig.simulate.value_or(rosin::simulate_section{});
   double longest_s = 0;
   for (const auto& take : rig.takes) {
