@@ -136,6 +136,7 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   h.held_out_density = h.held_out_gain / h.share;
   double size = 0;
   for (const auto& own : fit.solution.own) size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
+  h.parameters[0].sd = std::hypot(h.parameters[0].sd, contact_faults::slip_tone * tone.frequency_Hz);  // seen once a period only
   h.parameters[1].value = size;
   double mu = 0;
   for (std::size_t t = 0; t < bench.records().size(); ++t) mu += std::abs(bench.predicted(t).mean()) / static_cast<double>(bench.records().size());
