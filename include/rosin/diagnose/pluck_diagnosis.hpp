@@ -185,7 +185,8 @@ inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<plu
 /// Before and after on takes that were not fitted, and whether that is an explanation. `noise_seen`: before the releases as well; much noise
 /// that nothing else bears out may be what the model leaves.
 inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool noise_seen, bool modulated) {
-  constexpr double much_noise = 0.05, most_left = 6;
+  constexpr double much_noise = 0.05;
+  const double most_left = d.best.effects.size() > 1 ? 2 : 6;  // of the floor: who may take several names has to leave less
   scene_fit plain = d.base;
   plain.horizon_periods = d.best.horizon_periods;
   for (const pluck_take& take : judged) {
