@@ -93,7 +93,16 @@ rosin::outcome<processed> process_with_model(const corrected_model& model, const
                                              std::vector<std::string>& warnings) {
   provenance own{model.from};
   std::vector<std::string> said;
-  auto strokes = reconstruct_strokes(rig, rosin::values_of(rig), *model.plucks, model.tension_drift, own, said, take, limits);
+  const auto values = rosin::values_of(rig);
+  auto strokes = reconstruct_strokes(rig, values, *model.plucks, model.tension_drift, own, said, take, limits);
+  // A string that motion stretches is tighter under the bow than the plucks' mean: by as much as the force's two versions say.
+  const bool stretches = std::find(model.effects.begin(), model.effects.end(), "tension-modulation") != model.effects.end();
+  if (const auto drift = stretches && model.tension_drift == 0 && !strokes.empty() ? drift_of(strokes, *model.plucks) : rosin::tension_drift{};
+      drift.relative > 3 * drift.sd && drift.delta_after < drift.delta_before) {
+    said.clear();
+    strokes = reconstruct_strokes(rig, values, *model.plucks, drift.relative, own, said, take, limits);
+    said.push_back(take + ": its tension is " + rosin::detail::figure(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
+  }
   if (strokes.empty()) return rosin::failure{model.file + ": " + (said.empty() ? take + " could not be reconstructed" : said.back())};
   warnings.insert(warnings.end(), said.begin(), said.end());
   diagnosed_stroke& s = strokes.front();

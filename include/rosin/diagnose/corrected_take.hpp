@@ -77,6 +77,7 @@ inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::arra
     }
   for (std::size_t c = 0; c < 2; ++c) {
     sensor_response sensor = scene.sensors[c];
+    sensor.delay_s -= scene.sensors[0].delay_s;  // the near channel's clock counts
     if (sensor.corner_Hz > 0) restore_ac_coupled(std::span(recorded[c]), sensor.corner_Hz, rate_Hz);
     sensor.corner_Hz = 0;
     if (sensor.resonance_Hz > 0 || sensor.delay_s != 0) detail::divide_by_sensor(recorded[c], sensor, rate_Hz, edge_Hz);

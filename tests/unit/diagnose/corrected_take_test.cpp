@@ -31,7 +31,7 @@ TEST_CASE("a resonance, a skew, crosstalk and hum are taken out of a stroke") {
   const Eigen::Index at = layout.size();
   fit.value[at] = std::log(15e3), fit.value[at + 1] = std::log(9.0), fit.value[at + 2] = 2e-6, fit.value[at + 3] = 0.03, fit.value[at + 4] = std::log(50.0);
 
-  const rosin::sensor_response near{.resonance_Hz = 15e3, .q = 9, .delay_s = -1e-6}, far{.delay_s = 1e-6};
+  const rosin::sensor_response near{.resonance_Hz = 15e3, .q = 9}, far{.delay_s = 2e-6};
   std::array<std::vector<double>, 2> seen{std::vector<double>(20000), std::vector<double>(20000)};
   for (std::size_t i = 0; i < 20000; ++i) {
     const double t = static_cast<double>(i) / take_rate_Hz;
