@@ -19,6 +19,7 @@ std::vector<rosin::pluck_effect> effects_of(const json& diagnosis, const std::ve
     const auto e = std::find_if(catalogue.begin(), catalogue.end(), [&](const auto& c) { return c.id() == (place.empty() ? name : name + "@" + place); });
     if (e != catalogue.end()) found.push_back(*e), out.effects.push_back(name);
     else if (name == "tension-drift") out.tension_drift = m.at("parameters").at("relative").at("value"), out.effects.push_back(name);
+    else if (name == "finite-contact-width" && m.at("parameters").contains("width_m")) out.contact_width_m = m["parameters"]["width_m"].at("value"), out.effects.push_back(name);
     else out.passed_over.push_back(name);
   }
   return found;
@@ -55,7 +56,7 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
   if (!calibration.contains("fundamental_Hz")) return wrong("calibration has no \"fundamental_Hz\"");
   keep_calibrated(calibration, *plucks);
   if (plucks->takes.empty()) return wrong("calibration has none of the plucks that " + rig.file + " names");
-  corrected_model out{path, {}, 0, {}, {}, from};
+  corrected_model out{path, {}, 0, 0, {}, {}, from};
   const rosin::pluck_layout layout(plucks->takes, plucks->options);
   const double rate = plucks->takes.front().rate_Hz, pitch = value_of(calibration, layout.name(rosin::pluck_layout::fundamental))[0];
   const rosin::string_facts facts{pitch, rate, 0.45 * rate, values.impedance_Ns_m->value, values.length_m ? values.length_m->value : 0, plucks->takes.size()};
@@ -106,6 +107,10 @@ rosin::outcome<processed> process_with_model(const corrected_model& model, const
   if (strokes.empty()) return rosin::failure{model.file + ": " + (said.empty() ? take + " could not be reconstructed" : said.back())};
   warnings.insert(warnings.end(), said.begin(), said.end());
   diagnosed_stroke& s = strokes.front();
+  if (model.contact_width_m > 0 && is_plain(*model.plucks))
+    if (const auto edge_Hz = see_as_wide(rig, model.contact_width_m, s))
+      warnings.push_back(take + ": force of both places of a contact of " + rosin::detail::figure(1e3 * model.contact_width_m, "%.3g") + " mm and their mean velocity, up to " +
+                         rosin::detail::figure(1e-3 * *edge_Hz, "%.3g") + " kHz, where they can be told apart; the two versions part as a point's do");
   processed out;
   out.used = s.calibration, out.force_N = std::move(s.force_N), out.motion = std::move(s.motion), out.sd = std::move(s.sd);
   out.why_not_periodic = "not sought with --model";

@@ -18,7 +18,7 @@ namespace tool {
 struct corrected_model {
   std::string file;
   std::shared_ptr<const rosin::pluck_diagnosis> plucks;
-  double tension_drift = 0;
+  double tension_drift = 0, contact_width_m = 0;
   std::vector<std::string> effects;   ///< of string, ends, wire, sensors and tension: those that a reconstruction can take into account
   std::vector<std::string> passed_over;  ///< of the contact: a reconstruction does not need them
   provenance from;

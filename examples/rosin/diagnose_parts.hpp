@@ -61,6 +61,9 @@ void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_dia
                                                                 const std::string& only = {}, std::optional<rosin::band> band = {});
 /// Eq. (12) as noise alone makes it.
 [[nodiscard]] double parting_by_noise(const diagnosed_stroke& s);
+/// Force and motion of a stroke under a contact of some width, in place of a point's: those of both its places, up to the frequency that
+/// is returned; the versions part as a point's do. Nothing is changed where the string's length is unknown.
+[[nodiscard]] std::optional<double> see_as_wide(const rosin::rig& rig, double width_m, diagnosed_stroke& s);
 [[nodiscard]] rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks);
 /// The mean force that AC-coupled sensors lost, as far as friction is usually known, put into what the strokes are examined with.
 void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, std::vector<diagnosed_stroke>& strokes);

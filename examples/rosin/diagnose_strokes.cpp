@@ -142,20 +142,40 @@ rosin::contact_model declared_contact(const rosin::rig& rig) {
   return model;
 }
 
+rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_stroke& s, bool plain_string) {
+  rosin::contact_take t{s.name, s.mean_N, s.mean_m_s, s.motion.velocity_near_m_s, s.motion.velocity_far_m_s};
+  if (plain_string) t.near_N = s.force_N[0], t.far_N = s.force_N[1];  // a contact's width can be told on a plain string only
+  t.rate_Hz = s.rate_Hz, t.rod_speed_m_s = s.speed_m_s, t.normal_force_N = s.normal_force_N;
+  t.delay_s = s.calibration.at.delay_s, t.stiffness_s2 = s.calibration.at.stiffness_s2;
+  t.inverse_q = s.calibration.at.loss.inverse_q(0.5 / (t.delay_s[0] + t.delay_s[1]));
+  t.impedance_Ns_m = s.calibration.at.impedance_Ns_m, t.length_m = rig.string.length_m.value_or(0);
+  t.noise_N = noise_of(s.calibration);
+  t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.level_sd_N = s.level_sd_N, t.edge_Hz = 0.45 * s.rate_Hz;
+  return t;
+}
+
 rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const rosin::contact_model& model) {
   std::vector<rosin::contact_take> takes;
-  for (const auto& s : strokes) {
-    rosin::contact_take t{s.name, s.mean_N, s.mean_m_s, s.motion.velocity_near_m_s, s.motion.velocity_far_m_s};
-    if (plain_string) t.near_N = s.force_N[0], t.far_N = s.force_N[1];  // a contact's width can be told on a plain string only
-    t.rate_Hz = s.rate_Hz, t.rod_speed_m_s = s.speed_m_s, t.normal_force_N = s.normal_force_N;
-    t.delay_s = s.calibration.at.delay_s, t.stiffness_s2 = s.calibration.at.stiffness_s2;
-    t.inverse_q = s.calibration.at.loss.inverse_q(0.5 / (t.delay_s[0] + t.delay_s[1]));
-    t.impedance_Ns_m = s.calibration.at.impedance_Ns_m, t.length_m = rig.string.length_m.value_or(0);
-    t.noise_N = noise_of(s.calibration);
-    t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.level_sd_N = s.level_sd_N, t.edge_Hz = 0.45 * s.rate_Hz;
-    takes.push_back(t);
-  }
+  for (const auto& s : strokes) takes.push_back(contact_take_of(rig, s, plain_string));
   return rosin::contact_hypotheses(takes, model);
+}
+
+std::optional<double> see_as_wide(const rosin::rig& rig, double width_m, diagnosed_stroke& s) {
+  rosin::contact_take take = contact_take_of(rig, s, true);
+  rosin::contact_model model = declared_contact(rig);
+  if (take.length_m > 0) model.width_s = width_m / take.length_m * (take.delay_s[0] + take.delay_s[1]);
+  const auto one = rosin::as_one_contact({take}, model);
+  if (!one) return std::nullopt;
+  auto& m = s.motion;
+  const auto centre_on = [](std::vector<double>& a, std::vector<double>& b, const std::vector<double>& mean) {  // what they part by stays
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const double apart = 0.5 * (a[i] - b[i]);
+      a[i] = mean[i] + apart, b[i] = mean[i] - apart;
+    }
+  };
+  centre_on(m.force_near_N, m.force_far_N, one->force_N[0]);
+  centre_on(m.velocity_near_m_s, m.velocity_far_m_s, one->velocity_m_s[0]);
+  return one->takes[0].edge_Hz;
 }
 
 }  // namespace tool
