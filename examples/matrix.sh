@@ -17,13 +17,13 @@ set_of() { # name, rigs a round, seed, options
   "$rosin" challenge --out "$name" --seed "$seed" --count $((round * rigs)) "$@" >/dev/null
 }
 all_sets() {
-  set_of one 60 91001 "$@"
-  set_of none 30 93003 --effects 0 "$@"
-  set_of two 12 92002 --effects 2 "$@"
-  set_of tenth 8 96006 --strength 0.1 "$@"
-  set_of db40 8 94004 --noise-db 40 "$@"
-  set_of db50 8 95005 --noise-db 50 "$@"
-  set_of left 8 98008 --leave-out "$@"
+  set_of one 60 81001 "$@"
+  set_of none 30 83003 --effects 0 "$@"
+  set_of two 12 82002 --effects 2 "$@"
+  set_of tenth 8 86006 --strength 0.1 "$@"
+  set_of db40 8 84004 --noise-db 40 "$@"
+  set_of db50 8 85005 --noise-db 50 "$@"
+  set_of left 8 88008 --leave-out "$@"
 }
 
 for part in $(seq "$cores"); do

@@ -80,12 +80,17 @@ std::vector<std::string> hidden_in(const fs::path& truth) {
   return out;
 }
 
+std::vector<fs::path> sorted_entries(const fs::path& folder) {
+  std::vector<fs::path> out;
+  for (const auto& entry : fs::directory_iterator(folder)) out.push_back(entry.path());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 /// Diagnoses every rig of the folder that has no diagnosis yet; a rig that cannot be diagnosed is named and counts as wrong.
 void diagnose_all(const places& at, bool leave_out, const provenance& from, std::size_t shard, std::size_t shards) {
-  std::vector<fs::path> rigs;
-  for (const auto& entry : fs::directory_iterator(at.rigs))
-    if (fs::exists(entry.path() / "rig.toml")) rigs.push_back(entry.path());
-  std::sort(rigs.begin(), rigs.end());
+  auto rigs = sorted_entries(at.rigs);
+  std::erase_if(rigs, [](const fs::path& rig) { return !fs::exists(rig / "rig.toml"); });
   progress bar{"diagnosing", rigs.size()};
   for (std::size_t i = 0; i < rigs.size(); ++i, bar.step()) {
     const std::string name = rigs[i].filename().string();
@@ -108,9 +113,7 @@ void diagnose_all(const places& at, bool leave_out, const provenance& from, std:
 void reconstruct_all(const places& at, const provenance& from, std::size_t shard, std::size_t shards) {
   std::error_code error;
   fs::create_directories(at.forces, error);
-  std::vector<fs::path> diagnoses;
-  for (const auto& entry : fs::directory_iterator(at.diagnoses)) diagnoses.push_back(entry.path());
-  std::sort(diagnoses.begin(), diagnoses.end());
+  const auto diagnoses = sorted_entries(at.diagnoses);
   progress bar{"reconstructing", diagnoses.size()};
   for (std::size_t i = 0; i < diagnoses.size(); ++i, bar.step()) {
     const std::string name = diagnoses[i].stem().string();
@@ -123,11 +126,8 @@ void reconstruct_all(const places& at, const provenance& from, std::size_t shard
 }
 
 std::vector<rig_score> score_all(const places& at) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(at.diagnoses)) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
   std::vector<rig_score> out;
-  for (const auto& file : files) {
+  for (const auto& file : sorted_entries(at.diagnoses)) {
     std::ifstream truth{at.truth / file.filename()}, said{file};
     if (!truth || !said) continue;
     const json diagnosis = json::parse(said, nullptr, false), hidden = json::parse(truth, nullptr, false);

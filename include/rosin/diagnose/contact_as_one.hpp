@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 //
 // What a contact of some width that was found leaves to the rest of the catalogue: one contact, which moves as both its places do on the
-// average and pulls with the force of both (contact_width.hpp), up to where both can be told apart. Torsion is that of a string held at two
+// average and pulls with the force of both (wide_record.hpp), up to where both can be told apart. Torsion is that of a string held at two
 // places; what one contact's torsion would make of the force is set off against it, so that whoever adds that has the true surface.
 //
 #pragma once
 
-#include <rosin/diagnose/contact_width.hpp>
+#include <rosin/diagnose/wide_record.hpp>
 
 #include <cmath>
 #include <limits>
@@ -19,23 +19,6 @@ struct one_contact {
   std::vector<std::vector<double>> force_N, velocity_m_s;
   std::vector<contact_take> takes;
 };
-
-namespace detail {
-
-/// What the sensors' noise is in a row of columns F_1, F_2, rms, through a window.
-template <class Row>
-[[nodiscard]] double noise_in(const Row& row, const contact_take& take, const smooth_window& window) {
-  constexpr int steps = 400;
-  double power = 0;
-  for (int k = 0; k < steps; ++k) {
-    const double f = window.edge_Hz * (k + 0.5) / steps;
-    const auto columns = row(f);
-    for (const std::size_t side : {0U, 1U}) power += std::pow(window(f) * take.noise_N[side], 2) * std::norm(columns[side]);
-  }
-  return std::sqrt(power * 2 * window.edge_Hz / (take.rate_Hz * steps));
-}
-
-}  // namespace detail
 
 /// Nothing where no width is known or the terminations' forces are not given. Torsion: as the model has it, or none.
 [[nodiscard]] inline std::optional<one_contact> as_one_contact(const std::vector<contact_take>& all, const contact_model& model) {
@@ -49,29 +32,21 @@ template <class Row>
     const stick_record record(sticks.front());
     const torsion_values torsion = model.torsion.value_or(stiff);
     const torsion_at_contact single(sticks.front(), torsion, torsion_damping::constant_q);
-    wide_record wide(take, record);
-    const auto row = [&](std::size_t first) {
-      return [&wide, &single, half_s, torsion, first](double f) {
-        const auto columns = wide.as_one(f, half_s, torsion, torsion_damping::constant_q, single);
-        return std::array{columns[first], columns[first + 1]};
-      };
-    };
     const smooth_window window = wide_record::below_pole(record.window(), half_s);
+    const wide_as_one whole = wide_record(take, record).as_one(half_s, window, torsion, torsion_damping::constant_q, single);
     const auto placed = [&](const std::vector<double>& known) {
-      std::vector<double> whole(take.force_N.size(), std::numeric_limits<double>::quiet_NaN());
-      std::copy(known.begin(), known.end(), whole.begin() + static_cast<std::ptrdiff_t>(record.origin()));
-      return whole;
+      std::vector<double> padded(take.force_N.size(), std::numeric_limits<double>::quiet_NaN());
+      std::copy(known.begin(), known.end(), padded.begin() + static_cast<std::ptrdiff_t>(record.origin()));
+      return padded;
     };
-    out.velocity_m_s.push_back(placed(wide.signal_of(row(0), window.edge_Hz)));
-    out.force_N.push_back(placed(wide.signal_of(row(2), window.edge_Hz)));
+    out.force_N.push_back(placed(whole.force_N)), out.velocity_m_s.push_back(placed(whole.velocity_m_s));
     contact_take one = take;
     one.edge_Hz = window.edge_Hz;
+    one.force_N = out.force_N.back(), one.velocity_m_s = out.velocity_m_s.back();
     one.velocity_near_m_s = one.velocity_far_m_s = one.near_N = one.far_N = {};
-    one.velocity_sd_m_s = detail::noise_in(row(0), take, window) / std::sqrt(stick_bench::passed_noise);
-    one.force_sd_N = detail::noise_in(row(2), take, window);
+    one.force_sd_N = whole.force_noise_N, one.velocity_sd_m_s = whole.velocity_noise_m_s / std::sqrt(stick_bench::passed_noise);
     out.takes.push_back(one);
   }
-  for (std::size_t t = 0; t < out.takes.size(); ++t) out.takes[t].force_N = out.force_N[t], out.takes[t].velocity_m_s = out.velocity_m_s[t];
   return out;
 }
 

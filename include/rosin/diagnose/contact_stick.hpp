@@ -19,6 +19,23 @@ namespace rosin {
   return -1e-6 * s / (1.0 + s * delay_s);
 }
 
+namespace detail {
+
+/// What the sensors' noise is in a row of columns F_1, F_2 (asked by frequency), rms, through a window.
+template <class Row>
+[[nodiscard]] double noise_of_ends(const Row& row, const std::array<double, 2>& noise_N, double rate_Hz, const smooth_window& window) {
+  constexpr int steps = 400;
+  double power = 0;
+  for (int k = 0; k < steps; ++k) {
+    const double f = window.edge_Hz * (k + 0.5) / steps;
+    const std::array<std::complex<double>, 2> columns = row(f);
+    for (const std::size_t side : {0U, 1U}) power += std::pow(window(f) * noise_N[side], 2) * std::norm(columns[side]);
+  }
+  return std::sqrt(power * 2 * window.edge_Hz / (rate_Hz * steps));
+}
+
+}  // namespace detail
+
 /// Records, the samples that stick, and the equation as declared.
 class stick_bench {
 public:
@@ -100,15 +117,12 @@ public:
   /// f = F_1 cos(w tau_1) + F_2 cos(w tau_2).
   template <class Transfer>
   [[nodiscard]] double noise_through(std::size_t take, const Transfer& transfer) const {
-    constexpr int steps = 400;
     const stick_take& r = records_[take].take();
-    const smooth_window window = records_[take].window();
-    double power = 0;
-    for (int k = 0; k < steps; ++k) {
-      const double f = window.edge_Hz * (k + 0.5) / steps, through = std::norm(window(f) * std::complex<double>(transfer(f)));
-      for (std::size_t side = 0; side < 2; ++side) power += through * std::pow(noise_N_[take][side] * std::cos(2 * std::numbers::pi * f * r.delay_s[side]), 2);
-    }
-    return std::sqrt(power * 2 * window.edge_Hz / (r.rate_Hz * steps));
+    const auto row = [&](double f) {
+      const std::complex<double> through = transfer(f);
+      return std::array{through * std::cos(2 * std::numbers::pi * f * r.delay_s[0]), through * std::cos(2 * std::numbers::pi * f * r.delay_s[1])};
+    };
+    return detail::noise_of_ends(row, noise_N_[take], r.rate_Hz, records_[take].window());
   }
 
   /// Gains of an equation over the declared one; the same independence is granted to both.

@@ -1,128 +1,16 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A contact of some width w holds the string at two places, not at one. Each end of the string then tells of the place that is
-// nearer to it, and a reconstruction of one point between them finds its two versions at odds (specification sheet, 6.1, item 30).
-// With a width assumed the two places follow exactly from the two ends' forces, F_1 and F_2, by what waves do between them:
-//
-//     v_a = F_1 sinh(g a) / Z_w,   v_b = F_2 sinh(g b) / Z_w,   f_a +- f_b = F_1 cosh(g a) +- F_2 cosh(g b) + Z_w (v_a +- v_b) tanh(g d)^(+-1)
-//
-// with a = tau_1 - d, b = tau_2 - d, d = w / (2 c). While they stick, both move with the rod, torsion included (torsion_pair.hpp). The width
-// is the one that makes that so at both places, with torsion free as far as it may be off; w = 0, the declared contact, is what it
-// is measured against.
+// Whether the contact has some width. Each end of the string then tells of the place that is nearer to it, and a reconstruction of one
+// point between them finds its two versions at odds. While they stick, both places (wide_record.hpp) move with the rod, torsion
+// included. The width is the one that makes that so at both, with torsion free as far as it may be off; w = 0, the declared
+// contact, is what it is measured against.
 //
 #pragma once
 
-#include <rosin/diagnose/contact_stick.hpp>
-#include <rosin/propagate/dispersion.hpp>
-#include <rosin/torsion/torsion_pair.hpp>
+#include <rosin/diagnose/wide_record.hpp>
 
 namespace rosin {
-
-/// Both places of a wide contact, smoothed.
-struct wide_motion {
-  std::vector<double> near_m_s, far_m_s;        ///< surface velocities less the rod's
-  std::array<std::vector<double>, 2> compliance;  ///< columns as in stick_record
-};
-
-/// A take's terminations, transformed once.
-class wide_record {
-  using complex = std::complex<double>;
-
-public:
-  wide_record(const contact_take& take, const stick_record& record)
-      : take_{take}, near_{record.known(take.near_N), take.rate_Hz}, far_{record.known(take.far_N), take.rate_Hz} {}
-
-  [[nodiscard]] wide_motion at(double half_delay_s, const smooth_window& window, const torsion_values& values, torsion_damping damping = torsion_damping::constant_q) {
-    const torsion_pair torsion = rolling(half_delay_s, values, damping);
-    wide_motion m;
-    std::array<std::vector<double>*, 4> to{&m.near_m_s, &m.far_m_s, &m.compliance[0], &m.compliance[1]};
-    std::vector<std::array<complex, 8>> table;
-    for (std::size_t k = 0; static_cast<double>(k) * near_.bin_Hz() < window.edge_Hz; ++k) table.push_back(passage(static_cast<double>(k) * near_.bin_Hz(), half_delay_s, torsion));
-    for (const std::size_t side : {0U, 1U})
-      for (std::size_t row = 0; row < 4; ++row) {
-        const auto part = (side == 0 ? near_ : far_).through(window, [&](double f) { return table[static_cast<std::size_t>(std::lround(f / near_.bin_Hz()))][2 * row + side]; });
-        to[row]->resize(part.size(), 0.0);
-        detail::add_to(*to[row], part);
-      }
-    for (auto* v : {&m.near_m_s, &m.far_m_s})
-      for (double& x : *v) x -= take_.rod_speed_m_s;
-    return m;
-  }
-
-  /// What the sensors' noise makes either place seem to move by, rms of both.
-  [[nodiscard]] double noise_m_s(double half_delay_s, const smooth_window& window, const torsion_values& values, torsion_damping damping) const {
-    const torsion_pair torsion = rolling(half_delay_s, values, damping);
-    double power = 0;
-    constexpr int steps = 400;
-    for (int k = 0; k < steps; ++k) {
-      const double f = window.edge_Hz * (k + 0.5) / steps;
-      const auto row = passage(f, half_delay_s, torsion);
-      for (const std::size_t column : {0U, 1U}) power += 0.5 * std::pow(window(f) * take_.noise_N[column], 2) * (std::norm(row[column]) + std::norm(row[2 + column]));
-    }
-    return std::sqrt(power / steps * 2 * window.edge_Hz / take_.rate_Hz);
-  }
-
-  /// Of both places at a frequency: the centre's mean velocity as it would be if one contact's torsion turned it under the force of both
-  /// (columns F_1, F_2), and that force.
-  [[nodiscard]] std::array<complex, 4> as_one(double f, double half_delay_s, const torsion_values& values, torsion_damping damping, const torsion_at_contact& single) const {
-    if (f == 0) return {0, 0, 1, 1};
-    const auto row = passage(f, half_delay_s, rolling(half_delay_s, values, damping));
-    std::array<complex, 4> out;
-    for (const std::size_t side : {0U, 1U}) {
-      out[2 + side] = row[4 + side] / complex(0, 2 * std::numbers::pi * f * stick_record::compliance_unit);
-      out[side] = 0.5 * (row[side] + row[2 + side]) - single(f) * out[2 + side];
-    }
-    return out;
-  }
-  /// A row of such columns as a signal, from 0 to `edge_Hz`.
-  template <class Row>
-  [[nodiscard]] std::vector<double> signal_of(const Row& row, double edge_Hz) {
-    constexpr smooth_window flat{1e15};
-    std::vector<double> out = near_.through(flat, [&](double f) { return f < edge_Hz ? row(f)[0] : complex(0); });
-    detail::add_to(out, far_.through(flat, [&](double f) { return f < edge_Hz ? row(f)[1] : complex(0); }));
-    return out;
-  }
-
-  /// Up to where both places can be told apart: their sum has its first pole at 1 / (4 d).
-  [[nodiscard]] static smooth_window below_pole(const smooth_window& window, double half_delay_s) noexcept {
-    return {half_delay_s > 0 ? std::min(window.edge_Hz, 0.22 / half_delay_s) : window.edge_Hz};
-  }
-
-  static constexpr double pole_width = 0.1;  ///< where the piece between both places is a quarter wave long, their sum is all noise
-
-private:
-  [[nodiscard]] torsion_pair rolling(double half_delay_s, const torsion_values& v, torsion_damping damping) const {
-    return {{(take_.delay_s[0] - half_delay_s) / v.speed_ratio, 2 * half_delay_s / v.speed_ratio, (take_.delay_s[1] - half_delay_s) / v.speed_ratio},
-            take_.impedance_Ns_m * v.impedance_ratio, v.q, damping};
-  }
-
-  /// Rows: surface at a, surface at b, two columns of compliance; columns: F_1, F_2.
-  [[nodiscard]] std::array<complex, 8> passage(double f, double d, const torsion_pair& torsion) const {
-    if (f == 0) return {};
-    const double w = 2 * std::numbers::pi * f, eps = take_.stiffness_s2, Z = take_.impedance_Ns_m * wave_impedance_ratio(w, eps);
-    const complex g(0.5 * w * take_.inverse_q * slowness_ratio(w, eps), phase_rate(w, eps));
-    const complex near_field(0, -near_field_ratio(w, eps) / (2 * Z * force_factor(w, eps)));
-    const double a = take_.delay_s[0] - d, b = take_.delay_s[1] - d;
-    const complex cosh_d = std::cosh(g * d), sinh_d = std::sinh(g * d), tanh_d = sinh_d * std::conj(cosh_d) / (std::norm(cosh_d) + pole_width * pole_width);
-    const auto rolls = torsion(f);
-    std::array<complex, 8> out;
-    for (const std::size_t side : {0U, 1U}) {
-      const double own = side == 0 ? a : b, sign = side == 0 ? 1 : -1;
-      const complex v = std::sinh(g * own) / Z, c = std::cosh(g * own), sum = c + tanh_d * Z * v;
-      const complex difference = d > 0 ? sign * (c + Z * v * cosh_d * std::conj(sinh_d) / (std::norm(sinh_d) + 1e-12)) : complex(0);
-      const complex fa = 0.5 * (sum + difference), fb = 0.5 * (sum - difference);
-      out[side] = (side == 0 ? v : complex(0)) + (rolls.aa + near_field) * fa + rolls.across * fb;
-      out[2 + side] = (side == 1 ? v : complex(0)) + (rolls.bb + near_field) * fb + rolls.across * fa;
-      out[4 + side] = sum * complex(0, w * stick_record::compliance_unit);
-      out[6 + side] = out[4 + side] * std::pow(f / stick_record::compliance_corner_Hz, 2);
-    }
-    return out;
-  }
-
-  contact_take take_;
-  contact_signal<> near_, far_;
-};
 
 namespace detail {
 

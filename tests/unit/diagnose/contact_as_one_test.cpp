@@ -9,12 +9,7 @@
 namespace {
 
 double off_within_30_kHz(const std::vector<double>& found, const std::vector<double>& truth) {
-  rosin::contact_signal<> a(found, contact_rigs::rate), b(truth, contact_rigs::rate);
-  const auto plain = [](double) { return 1.0; };
-  const auto x = a.through(rosin::smooth_window{30e3}, plain), y = b.through(rosin::smooth_window{30e3}, plain);
-  double off = 0, all = 0;
-  for (std::size_t i = 1500; i < 6500; ++i) off += std::pow(x[i] - y[i], 2), all += y[i] * y[i];
-  return std::sqrt(off / all);
+  return contact_rigs::off(contact_rigs::within_30_kHz(found), contact_rigs::within_30_kHz(truth));
 }
 
 /// Two strokes under a contact of 5 mm.

@@ -55,4 +55,15 @@ inline rosin::contact_take take_of(const two_places& truth, double position) {
   return take;
 }
 
+inline std::vector<double> within_30_kHz(const std::vector<double>& x) {
+  return rosin::contact_signal<>(x, rate).through(rosin::smooth_window{30e3}, [](double) { return 1.0; });
+}
+
+/// How far a signal is off the truth in the middle, relative.
+inline double off(const std::vector<double>& found, const std::vector<double>& truth) {
+  double error = 0, all = 0;
+  for (std::size_t i = 1500; i < 6500; ++i) error += std::pow(found[i] - truth[i], 2), all += truth[i] * truth[i];
+  return std::sqrt(error / all);
+}
+
 }  // namespace contact_rigs
