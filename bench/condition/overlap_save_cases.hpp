@@ -35,7 +35,7 @@ std::vector<T> noise(std::size_t n, unsigned seed) {
   return x;
 }
 
-/// The spans that the kernels of sheet 1.3 d have at 1e-5: inverse of one side and the other side; and both of the one side.
+/// The spans that the kernels of the paper's string have at 1e-5: inverse of one side and the other side; and both of the one side.
 inline std::vector<kernel> kernels() {
   return {{-49, noise<double>(50, 1)}, {22, noise<double>(64, 2)}, {-49, noise<double>(99, 3)}, {0, {}}};
 }

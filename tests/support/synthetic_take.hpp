@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What two force transducers see of a plucked string, as a sum of its modes (sheet 1.4: pinned ends, mode n at
+// What two force transducers see of a plucked string, as a sum of its modes (pinned ends, mode n at
 // n f0 sqrt(1 + B n^2), amplitude F 2 / (n pi) sin(n pi beta) at the near end, alternating at the far end), with white
 // noise. Also the rig that belongs to it.
 //

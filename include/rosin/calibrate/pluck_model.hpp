@@ -9,8 +9,8 @@
 //                 F_far  = the same with (-1)^(n+1),
 //     s_n = w_n (-1/(2 Q_n) + i sqrt(1 - 1/(4 Q_n^2))),     w_n = 2 pi n f0 sqrt(1 + b n^2),   b = pi^2 B / (T L^2).
 //
-// Stiffness enters through the pitch of the partials alone: near field and force factor of the specification sheet (1.4)
-// are contained in it, since q_n (T k_n + B k_n^3) with q_n = 2 F sin(k_n x_p) / (L (T k_n^2 + B k_n^4)) leaves 2 F sin / (L k_n).
+// Stiffness enters through the pitch of the partials alone: near field and force factor are
+// contained in it, since q_n (T k_n + B k_n^3) with q_n = 2 F sin(k_n x_p) / (L (T k_n^2 + B k_n^4)) leaves 2 F sin / (L k_n).
 // That this is the inverse transform of sin(k x)/(G sin(k L)) is checked in the tests.
 //
 // psi is what conventions of damping differ in, all else being equal: -1 for a viscous force on each mode (no force at the

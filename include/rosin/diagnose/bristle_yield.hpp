@@ -3,7 +3,7 @@
 //
 // Bristles that bend also let go bit by bit, long before the string slips. Of the speed v of the rod relative to the string the part
 // 1 - p bends them and p is flow: z' = v (1 - p). With f = s0 z, as it is while they bend slowly, p is known from the force alone
-// (specification sheet, 3.4, with z / z_ss = f / (mu N)):
+// (elasto_plastic.hpp, with z / z_ss = f / (mu N)):
 //
 //     LuGre           p = sgn(v z) |f| / (mu N)
 //     elasto-plastic  p = alpha |f| / (mu N) where v z > 0 and |f| > elastic mu N, alpha half a sine from there to mu N; else 0

@@ -1,7 +1,7 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Bristles that bend before they give way, and let go bit by bit before the string slips (specification sheet, 3.4 and 6.1, item 33).
+// Bristles that bend before they give way, and let go bit by bit before the string slips.
 // While the string sticks, with eps = velocity of the surface less that of the rod, and f the force,
 //
 //     eps = -(s / (s0 (1 + s d))) f / (1 - p)

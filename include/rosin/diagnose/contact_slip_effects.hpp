@@ -7,7 +7,7 @@
 //     normal-force-ripple   N (1 + relative sin(2 pi frequency t + phase)): a tone in force / curve
 //     thermal-friction      the force follows a temperature that the slips so far have left
 //
-// or the other way about, where the declared law is thermal. (Specification sheet, 6.1, items 32 and 33.)
+// or the other way about, where the declared law is thermal. (docs/explain/catalogue.md.)
 //
 #pragma once
 

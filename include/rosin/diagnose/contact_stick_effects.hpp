@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Effects that show while the string sticks, each as columns in the equation of contact_stick.hpp. With eps = velocity of the
-// surface less that of the rod as declared, and f the force (specification sheet, 6.1, items 28 to 34):
+// surface less that of the rod as declared, and f the force (docs/explain/catalogue.md):
 //
 //     torsion                  eps = -(h_T - h_declared) * f
 //     rod-resonance            eps = -Y * f,    Y = (s / m) / (s^2 + s w0 / q + w0^2): fixed in frequency whatever the string does
@@ -205,7 +205,7 @@ struct family_fit {
     h.parameters = {{"frequency_Hz", f0, f0 * std::hypot(sd[1], contact_faults::rod_frequency)},
                     {"q", q, q * std::hypot(sd[2], contact_faults::rod_q)},
                     {"mass_kg", mass, mass * std::hypot(mass * sd[0], contact_faults::rod_mass)}};
-  constexpr double heaviest_kg = 0.15;  // modes of rods have grams (specification sheet, 6.1, item 29)
+  constexpr double heaviest_kg = 0.15;  // modes of rods have grams
   h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 79;  // inside the range that was searched
   return h;
 }

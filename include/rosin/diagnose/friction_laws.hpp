@@ -9,9 +9,9 @@
 //
 // with mu a spline of as many coefficients in either, common to all takes. The thermal contact has one temperature, cooled by
 // what it conducts away (a into the string, b into a rod whose surface is renewed by sliding) and by the material that slides out (c);
-// p says whether its heat capacity grows with the normal force. (Specification sheet, 3.1 to 3.3. The whole
-// heat memory of friction/contact_heat.hpp is tried besides. Heat that is gone within a few samples would be no memory but the force itself: the rates are bounded.) Coefficients and rates are fitted by least squares with
-// Student's t, and each take is predicted from the others.
+// p says whether its heat capacity grows with the normal force. The whole heat memory of friction/contact_heat.hpp is tried besides. Heat that is
+// gone within a few samples would be no memory but the force itself: the rates are bounded. Coefficients and rates are fitted by least squares
+// with Student's t, and each take is predicted from the others.
 //
 #pragma once
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Mains hum: lines at the mains' frequency and at what rectifiers and transformers add, but for those near a partial of the string; every
-// take has its own phases (specification sheet 6.1, item 11). Sought in what a fit leaves: there all lines together have to take away more
+// take has its own phases. Sought in what a fit leaves: there all lines together have to take away more
 // than noise would give them,
 //
 //     gain of ln L = (n / 2) sum over channels of ln(power before / power after)  >  k / 2 + sqrt(k / 2),   k amplitudes.

@@ -7,7 +7,7 @@
 //
 //     d' = d - J (J'J)^-1 J'd,        cos(A, B) = max over B's starting points of |d'_A . d'_B| / (|d'_A| |d'_B|),
 //
-// and |d'| against the noise says how strong the effect must be to be seen at five standard deviations (specification sheet 6.0, Fisher
+// and |d'| against the noise says how strong the effect must be to be seen at five standard deviations (Fisher's
 // analysis). Effects whose cosine is above 0.95 are one class: these plucks cannot tell them apart.
 //
 #pragma once

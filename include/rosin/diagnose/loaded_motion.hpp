@@ -3,7 +3,7 @@
 //
 // Force and velocity under the bow of a string that carries loads and ends on supports that yield, once plucks have told what
 // these are. All follows from the force on an end and the motion of that end, outwards to the bow, without solving for anything
-// (specification sheet 6.0, lines 1 and 2): with V = Z Y F the end's motion, the j-th load on the way feels and returns
+// with V = Z Y F the end's motion, the j-th load on the way feels and returns
 //
 //     Z v(x_j) = F sinh(gamma x_j) + V cosh(gamma x_j) - sum_(i<j) g_i sinh(gamma (x_j - x_i)) + N g_j,    g_j = -(Z_s / Z) Z v(x_j),
 //

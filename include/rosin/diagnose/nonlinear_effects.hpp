@@ -7,7 +7,7 @@
 //
 //     q_n'' + (w_n / Q) q_n' + [w_n^2 + e(t) (c k_n)^2] q_n = 0,    e = EA / (2 L T) integral y'^2 dx = EA / (4 T) sum (k_n q_n)^2
 //
-// (Kirchhoff, Carrier; specification sheet 6.1, items 8 and 16), is simulated twice, with and without e, and the difference taken
+// (Kirchhoff; Carrier 1945), is simulated twice, with and without e, and the difference taken
 // out: each mode turns exactly through half a step, is kicked by the tension, and turns on (Strang). A sensor that also feels the
 // tension itself records  f + s (1 / 2L) integral y'^2 dx:  sums and differences of partials, which players know as phantoms.
 //

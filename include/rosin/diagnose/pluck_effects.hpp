@@ -1,7 +1,7 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// The catalogue, as far as plucks tell of it: string, ends, wire, sensors (specification sheet 6.1, A to D). Each entry is a scene
+// The catalogue, as far as plucks tell of it: string, ends, wire, sensors (docs/explain/catalogue.md). Each entry is a scene
 // that is a little different. A new effect is one function here, or in a header of its own, and one line in pluck_effects().
 //
 #pragma once
@@ -36,19 +36,19 @@ inline pluck_effect bending_stiffness_effect(const string_facts&) {
           [](pluck_scene& s, const double* v, int) { s.string.inharmonicity += v[0]; }};
 }
 
-/// 1/Q = 1/Q0 + loss f; item 13.
+/// 1/Q = 1/Q0 + loss f.
 inline pluck_effect internal_loss_effect(const string_facts&) {
   return {"frequency-dependent-loss", -1, false, {{"loss_internal_s", -1e-8, 3e-5, 1e-11}}, {{1e-8}}, 0,
           [](pluck_scene& s, const double* v, int) { s.string.loss.internal_s += v[0]; }};
 }
 
-/// 1/Q = 1/Q0 + loss / sqrt(f), the boundary layer's part; section 5.
+/// 1/Q = 1/Q0 + loss / sqrt(f), the boundary layer's part.
 inline pluck_effect air_loss_effect(const string_facts&) {
   return {"air-loss", -1, false, {{"loss_air_sqrt_Hz", -1e-3, 1, 1e-6}}, {{1e-3}}, 0,
           [](pluck_scene& s, const double* v, int) { s.string.loss.air_sqrt_Hz += v[0]; }};
 }
 
-/// A second plane of vibration; item 10.
+/// A second plane of vibration.
 inline pluck_effect polarisation_effect(const string_facts&) {
   pluck_effect e{"second-polarization", -1, false, {{"detuning", -0.03, 0.03, 1e-7}, {"coupling", -0.9, 0.9, 1e-5}}, {}, 1,
                  [](pluck_scene& s, const double* v, int) { s.detuning = v[0], s.coupling = v[1]; }};
@@ -57,7 +57,7 @@ inline pluck_effect polarisation_effect(const string_facts&) {
   return e;
 }
 
-/// A bead, a winding's end; item 17.
+/// A bead, a winding's end.
 inline pluck_effect point_mass_effect(const string_facts& f) {
   const double Z = detail::unit_of(f), bond = detail::most_bond_s(f);
   pluck_effect e{"point-mass", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"mass_kg", 0, 1e-2 * Z, 1e-9 * Z}, {"bond_s", -bond, bond, 1e-9, false, -1, false, true}, {"loaded_loss", -1, 2, 1e-3, false, -1, false, true}}, {}, 1,
@@ -69,7 +69,7 @@ inline pluck_effect point_mass_effect(const string_facts& f) {
   return e;
 }
 
-/// A finger, felt; item 18.
+/// A finger, felt.
 inline pluck_effect point_damper_effect(const string_facts& f) {
   const double Z = detail::unit_of(f), lag = detail::most_lag_s;
   pluck_effect e{"point-damper", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"resistance_Ns_m", 0, 50 * Z, 1e-6 * Z}, {"lag_s", -lag, lag, 1e-9, false, -1, false, true}}, {}, 1,
@@ -78,7 +78,7 @@ inline pluck_effect point_damper_effect(const string_facts& f) {
   return e;
 }
 
-/// A damped mass on a spring under the string's end; item 1. Late or not, at its frequency it moves in phase with the force: the lag is
+/// A damped mass on a spring under the string's end. Late or not, at its frequency it moves in phase with the force: the lag is
 /// that of mass and spring, 1/Y = R + (M s + K / s) exp(s lag) = exp(s lag) ((M - R lag) s + R + K / s) to first order.
 inline pluck_effect support_resonance_effect(const string_facts& f, int end) {
   const double Z = detail::unit_of(f), lag = detail::most_lag_s;
@@ -94,21 +94,21 @@ inline pluck_effect support_resonance_effect(const string_facts& f, int end) {
   return e;
 }
 
-/// An end that takes energy at all frequencies alike; item 3.
+/// An end that takes energy at all frequencies alike.
 inline pluck_effect resistive_end_effect(const string_facts& f, int end) {
   const double Z = detail::unit_of(f);
   return {"resistive-end", end, true, {{"conductance_m_sN", 0, 0.5 / Z, 1e-8 / Z}}, {{1e-6 / Z}}, 0,
           [Z, end](pluck_scene& s, const double* v, int) { s.ends[static_cast<std::size_t>(end)].conductance += v[0] * Z; }};
 }
 
-/// An end that is a mass without a spring; item 2.
+/// An end that is a mass without a spring.
 inline pluck_effect massive_end_effect(const string_facts& f, int end) {
   const double Z = detail::unit_of(f);
   return {"massive-end", end, true, {{"per_mass_per_kg", 0, 1e4 / Z, 1e-4 / Z}}, {{1e-2 / Z}}, 0,
           [Z, end](pluck_scene& s, const double* v, int) { s.ends[static_cast<std::size_t>(end)].per_free_mass_per_s += v[0] * Z; }};
 }
 
-/// Both channels pass a first-order high-pass; item 6. What the held string gave was taken for part of the offset.
+/// Both channels pass a first-order high-pass. What the held string gave was taken for part of the offset.
 inline pluck_effect ac_coupling_effect(const string_facts&) {
   pluck_effect e{"ac-coupling", -1, false, {{"cutoff_Hz", 0.005, 200, 1e-5, true}}, {{0.1}, {0.5}, {2}, {8}, {25}, {70}}, -1,
                  [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
@@ -120,7 +120,7 @@ inline pluck_effect ac_coupling_effect(const string_facts&) {
   return e;
 }
 
-/// The transducer's own resonance; item 5.
+/// The transducer's own resonance.
 inline pluck_effect sensor_resonance_effect(const string_facts& f, int channel) {
   pluck_effect e{"sensor-resonance", channel, false, {{"frequency_Hz", 300, 1.5 * f.rate_Hz, 1e-6, true}, {"q", 0.55, 500, 1e-5, true}}, {}, -1,
                  [channel](pluck_scene& s, const double* v, int) {
@@ -132,7 +132,7 @@ inline pluck_effect sensor_resonance_effect(const string_facts& f, int channel) 
   return e;
 }
 
-/// The far channel comes late; item 7.
+/// The far channel comes late.
 inline pluck_effect skew_effect(const string_facts&) {
   return {"channel-skew", -1, false, {{"skew_s", -2e-3, 2e-3, 1e-11}}, {{1e-9}}, 0, [](pluck_scene& s, const double* v, int) {
             s.sensors[0].delay_s -= v[0] / 2;
@@ -140,13 +140,13 @@ inline pluck_effect skew_effect(const string_facts&) {
           }};
 }
 
-/// A part of each channel in the other; item 9.
+/// A part of each channel in the other.
 inline pluck_effect crosstalk_effect(const string_facts&) {
   return {"channel-crosstalk", -1, false, {{"fraction", -0.5, 0.5, 1e-7}}, {{1e-5}}, 0,
           [](pluck_scene& s, const double* v, int) { s.crosstalk = v[0]; }};
 }
 
-/// The wire lets go over a time; item 24. What was taken for the instant of release is its middle.
+/// The wire lets go over a time. What was taken for the instant of release is its middle.
 inline pluck_effect slow_release_effect(const string_facts&) {
   pluck_effect e{"slow-release", -1, false, {{"duration_s", 2e-7, 1e-3, 1e-5, true}}, {{3e-6}, {1e-5}, {1.8e-5}, {3e-5}, {6e-5}, {1.2e-4}}, -1,
                  [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
@@ -156,7 +156,7 @@ inline pluck_effect slow_release_effect(const string_facts&) {
   return e;
 }
 
-/// The wire grips the string over a width; item 25.
+/// The wire grips the string over a width.
 inline pluck_effect pluck_width_effect(const string_facts& f) {
   const double L = f.length_m > 0 ? f.length_m : 1.0;
   return {"finite-pluck-width", -1, false, {{"width_m", 1e-5 * L, 0.1 * L, 1e-5, true}}, {{3e-3 * L}, {1e-2 * L}, {3e-2 * L}}, -1,

@@ -9,8 +9,6 @@
 //     sensor:                H_c(s); and the sensor's own pole s_r rings with  -2 Res[H_c, s_r] H_string(s_r) / s_r
 //     crosstalk:             near + fraction far, far + fraction near
 //
-// Specification sheet 6.1, items 5-10, 24, 25.
-//
 #pragma once
 
 #include <rosin/diagnose/string_poles.hpp>

@@ -9,7 +9,7 @@
 //     an end moved at unit speed feels  S = (Z/s) kc q / (q^2+kc^2) epsilon [ kc^3 cot qL - q^3 coth kc L ]  at itself,
 //                             and  X = the same with -1/sin qL, -1/sinh kc L at the other end
 //
-// (specification sheet 1.4; M, A, S are one another's by reciprocity, A from -B y''' + T y'). Scatterers and ends close the loop:
+// (M, A, S are one another's by reciprocity, A from -B y''' + T y'). Scatterers and ends close the loop:
 // a small linear system whose determinant vanishes at the poles. Newton from the pinned string's poles, strength raised in steps.
 // Loss enters k as in transmission.hpp. What it makes of the impedance is a matter of convention, and a heavy bead tells: with every mode
 // damped by itself, i w w_m / Q, the loss sits half in the tension and half in the mass, T (1 + i / 2Q), but for

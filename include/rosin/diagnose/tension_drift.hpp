@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Did the tension change between the plucks and the strokes? Then both delays are stretched alike, d tau / tau = -dT / (2 T), and the
-// two versions of the force part (specification sheet 6.0 line 7, 6.1 item 15). One number for all takes; how well a moved contact
+// two versions of the force part (docs/explain/catalogue.md). One number for all takes; how well a moved contact
 // would do instead is tried beside it.
 //
 #pragma once

@@ -1,7 +1,7 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A contact of some width w holds the string at two places, not at one (specification sheet, 6.1, item 30). With a width assumed the
+// A contact of some width w holds the string at two places, not at one. With a width assumed the
 // two places follow exactly from the two ends' forces, F_1 and F_2, by what waves do between them:
 //
 //     v_a = F_1 sinh(g a) / Z_w,   v_b = F_2 sinh(g b) / Z_w,   f_a +- f_b = F_1 cosh(g a) +- F_2 cosh(g b) + Z_w (v_a +- v_b) tanh(g d)^(+-1)

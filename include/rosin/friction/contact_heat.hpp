@@ -1,7 +1,7 @@
 // tier: freestanding
 // SPDX-License-Identifier: MIT
 //
-// Temperature of the rosin in the contact (Smith and Woodhouse 2000; specification sheet, section 3.2). A layer of
+// Temperature of the rosin in the contact (Smith and Woodhouse 2000). A layer of
 // thickness delta on an area A = pi a^2 is heated by friction, cooled by fresh rosin that slides in, and conducts heat
 // into the rod, whose surface is renewed by sliding too, and into the string, whose is not:
 //

@@ -11,7 +11,6 @@
 //
 // whose left side rises and is convex in x: Newton's method from an x above the root comes down to it. Once more
 // than mu(0) N would be needed, the contact slips, with the branch rule of velocity_curve.
-// (Specification sheet, section 3.5.)
 //
 #pragma once
 

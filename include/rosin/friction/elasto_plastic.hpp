@@ -10,7 +10,7 @@
 // the law is passive. s0 is proportional to the normal force. The trapezoidal rule z = z0 + h (z' + z0') / 2 and the load
 // line leave one equation in v, since f(v) follows from the line, z' from f and z from z'. It goes from + to - as v
 // grows; the root is bracketed outwards from the last one (the contact moves on continuously) and found by
-// bisection with secant steps. (Specification sheet, section 3.4.)
+// bisection with secant steps.
 //
 #pragma once
 

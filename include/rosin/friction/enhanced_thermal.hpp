@@ -3,8 +3,8 @@
 //
 // Enhanced thermal law after Woodhouse and Galluzzo (2025): the strength of rosin depends on temperature and, slowly, on
 // the rate at which it is sheared, f = N Y(Theta) h(|v_r|). In each step the temperature is that of the step before; what is left
-// is a velocity curve, solved with the same rule of branches. (Specification sheet, section 3.3; the constants come
-// from a secondary source there.)
+// is a velocity curve, solved with the same rule of branches. The constants come
+// from a secondary source.
 //
 #pragma once
 

@@ -1,7 +1,7 @@
 // tier: freestanding
 // SPDX-License-Identifier: MIT
 //
-// Coefficient of friction against slip speed, measured in steady sliding (specification sheet, section 3.1).
+// Coefficient of friction against slip speed, measured in steady sliding.
 // Each curve gives value and slope at once, is defined for v >= 0 and falls with v; `convex_from()` is the slip
 // speed above which it is convex, on which the solution of the contact equation relies.
 //

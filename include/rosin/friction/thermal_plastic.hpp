@@ -3,7 +3,7 @@
 //
 // Rosin as a plastic solid whose strength depends on its temperature alone (Smith and Woodhouse 2000): while it slips
 // the force is N Y(Theta) against the slip, whatever the speed; it sticks while less is asked of it. The temperature
-// is that of the step before, so there is nothing to solve. (Specification sheet, section 3.2.)
+// is that of the step before, so there is nothing to solve.
 //
 #pragma once
 

@@ -11,7 +11,7 @@
 // slipping:  takes the largest root; where there is none, the string is captured. The middle root is never used.
 //
 // F is convex where mu is. Newton's method from u = D, where F > 0, then comes down to the largest root without ever
-// overshooting it, and proves that there is none by meeting a slope <= 0. (Specification sheet, section 3.1.)
+// overshooting it, and proves that there is none by meeting a slope <= 0.
 //
 #pragma once
 

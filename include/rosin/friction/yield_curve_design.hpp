@@ -7,7 +7,6 @@
 // that of the very steps of contact_heat, so that a law with the same heat parameters gives back mu(v) in steady
 // sliding. Woodhouse and Galluzzo (2025) count nothing as lost to the string: parameters.without_string(). The loss
 // depends on the normal force, because the contact's radius does: the table belongs to the one it was made for.
-// (Specification sheet, sections 3.2 and 3.3.)
 //
 #pragma once
 

@@ -10,7 +10,7 @@
 //     d  = 2 v / (tau sqrt(epsilon))                                                                 1/s
 //
 // As printed, Eq. (6) is half the response to an initial velocity; the boundary-value response that multiplies spectra by
-// exp(-i k x) needs the factors 2 T / sqrt(B m) and 1 / tau (specification sheet 1.2: without the last it is no all-pass).
+// exp(-i k x) needs the factors 2 T / sqrt(B m) and 1 / tau (docs/explain/theory.md: without the last it is no all-pass).
 // It is kept as the paper's own processing and as an independent check of the exact-phase kernels.
 //
 #pragma once
@@ -44,7 +44,7 @@ enum class airy_form {
 }
 
 /// FIR kernel from the Airy formula: evaluated `oversampling` times too often, band-limited, then decimated; sampled directly
-/// at the rate it would alias beyond use (sheet 1.3 c). Lossless, as the formula is.
+/// at the rate it would alias beyond use. Lossless, as the formula is.
 [[nodiscard]] inline fir airy_kernel(double delay_s, double stiffness_s2, const band& limits, double rate_Hz,
                                      airy_form form = airy_form::transmission, int oversampling = 32) {
   const double fine_Hz = rate_Hz * oversampling;

@@ -1,7 +1,7 @@
 // tier: freestanding
 // SPDX-License-Identifier: MIT
 //
-// The window in frequency that limits every kernel and every result to a band (specification sheet, 1.3 d):
+// The window in frequency that limits every kernel and every result to a band:
 //
 //     W(f) = 1 - a^4 (35 - 84 a + 70 a^2 - 20 a^3),   a = clip((|f| - pass) / (stop - pass), 0, 1)
 //

@@ -6,7 +6,7 @@
 //
 //     q(w) = c k(w) = w sqrt( 2 / (1 + sqrt(1 + 4 epsilon w^2)) ),   K = B k^2 / T = epsilon q^2.
 //
-// Specification sheet, section 1.1; checked there and in the tests against the roots of the PDE.
+// Checked in the tests against the roots of the PDE.
 //
 #pragma once
 
@@ -36,7 +36,7 @@ template <class T>
   return sqrt(T(1) + K) / (T(1) + T(2) * K);
 }
 
-/// G = Z_f / Z_w = (1 + 2K) / (1 + K): the factor on the force that a constant wave impedance leaves out (sheet 1.4).
+/// G = Z_f / Z_w = (1 + 2K) / (1 + K): the factor on the force that a constant wave impedance leaves out.
 template <class T>
 [[nodiscard]] T force_factor(T omega, T epsilon_s2) noexcept {
   const T K = stiffness_ratio(omega, epsilon_s2);

@@ -11,7 +11,7 @@
 namespace rosin {
 
 /// 1/Q of the transverse modes against frequency: a constant, a part that grows with frequency (internal
-/// friction) and the drag of the air in its boundary layer (specification sheet, section 5):
+/// friction) and the drag of the air in its boundary layer (Valette 1995):
 ///
 ///     1/Q(f) = 1/quality + internal_s f + air_sqrt_Hz / sqrt(f)
 struct loss_law {

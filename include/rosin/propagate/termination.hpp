@@ -6,7 +6,7 @@
 //
 //     z(w) = Z Y(w),      rigid: 0,      modes: sum_k (Z / M_k) s / (s^2 + s w_k / Q_k + w_k^2),  s = i w
 //
-// and, from that, the reflection of velocity waves R = -(1 - z)/(1 + z) (specification sheet 6.1 A). An admittance is passive where
+// and, from that, the reflection of velocity waves R = -(1 - z)/(1 + z). An admittance is passive where
 // Re z >= 0. Measured admittances and reflection functions: termination_table.hpp.
 //
 #pragma once

@@ -4,7 +4,7 @@
 // What a length of string does to a wave that passes: D(f) = exp(-gamma x), gamma x = tau (i q(w) + |w| c / (2 Q c_g)),
 // with tau the travel time at low frequency. Its inverse advances, undoes the dispersion and, if asked to, gives back what
 // was lost. Modal Q is a rate in time, so a path costs exp(-w x / (2 Q c_g)): the group velocity, not the phase velocity
-// (specification sheet, sections 1.1 and 2; checked against modal decay in the tests).
+// (checked against modal decay in the tests).
 //
 #pragma once
 

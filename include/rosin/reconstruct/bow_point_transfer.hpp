@@ -9,7 +9,7 @@
 //     v_j    = F_j (1 / D_j - D_j) / (2 Z_w)  -  i (k / kappa) f / (2 Z_f),  f = mean       Eqs. (1), (9)
 //
 // G = (1 + 2K)/(1 + K), Z_w = Z sqrt(1 + K), Z_f = G Z_w: what a constant impedance leaves out of a stiff string, and the near
-// field under the contact (specification sheet 1.4). Both are exact for the stiff string and checked against its modes in the
+// field under the contact (docs/explain/theory.md). Both are exact for the stiff string and checked against its modes in the
 // tests. All that the string has to be known by: two travel times, its dispersion and loss in time, and the impedance.
 //
 // An end that moves with the velocity V_j = Y_j F_j sends waves out as well: with the relative admittance z_j = Z Y_j
@@ -18,7 +18,7 @@
 //
 // rho = k / kappa. Nothing is inverted: z_j F_j = Z V_j is a causal, decaying function of the measured force, and goes in as a third
 // and a fourth signal (moving_ends, in newtons), so that these kernels stay as short as they are. Exact for the stiff string
-// (sheet 6.0, line 1, with stiffness and near field of the end); without moving ends nothing of it is compiled.
+// (with stiffness and near field of the end); without moving ends nothing of it is compiled.
 //
 // Each refinement, and the kernel, is chosen at compile time, so that the paper's own processing is one of the choices:
 // physics<false, false, false, airy_passage>.

@@ -6,7 +6,7 @@
 //
 //     Y(w) = (1 - i k / kappa) / (2 Z_f),      Z_f = Z (1 + 2K) / sqrt(1 + K),
 //
-// a wave to either side and the bend that stays near the force (specification sheet, 1.4). The simulated force runs straight
+// a wave to either side and the bend that stays near the force (docs/explain/theory.md). The simulated force runs straight
 // between its values at the steps, so the velocity at the steps is the discrete response to triangles of force,
 //
 //     y[n] = 1 / (2 pi) int Y(w) sinc^2(w h / 2) e^(i w n h) h dw,

@@ -3,7 +3,7 @@
 //
 // The two echoes that make a string a loop: from the contact to an end and back, as FIR kernels R1 and R2 of negative
 // sign. By frequency sampling they follow exp(-2 gamma x) everywhere but at the lowest partials: a loss proportional
-// to |w| has tails 1 / t^2 that a kernel of finite length must cut (specification sheet, section 2), and cutting
+// to |w| has tails 1 / t^2 that a kernel of finite length must cut, and cutting
 // those before t = 0, or scaling the rest up to -1 at 0 Hz, falsifies Q by per cents. So the longer kernel is corrected:
 //
 //     R1(z_n) R2(z_n) = 1  at z_n = exp(p_n h) for every partial's pole p_n,      R(1) = -1,

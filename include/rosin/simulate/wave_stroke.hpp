@@ -7,7 +7,7 @@
 //
 //     F_j = D_j s_j / G,       G = (1 + 2K) / (1 + K),
 //
-// the wave that left for it, one passage later (specification sheet, 1.4); of an end that moves 1 / (1 + z) of that (wave_end.hpp).
+// the wave that left for it, one passage later; of an end that moves 1 / (1 + z) of that (wave_end.hpp).
 //
 #pragma once
 

@@ -6,7 +6,7 @@
 //
 //     v_T / f = (1 / (2 Z_T)) 2 sinh(g_1) sinh(g_2) / sinh(g_1 + g_2),    g_j = i w tau_j + |w| tau_j / (2 Q)
 //
-// (specification sheet, sections 2 and 4; Woodhouse, Schumacher & Garoff (2000), section IV). Written with decaying exponentials
+// (Woodhouse, Schumacher & Garoff (2000), section IV). Written with decaying exponentials
 // only, (1 - e^{-2 g_1})(1 - e^{-2 g_2}) / (1 - e^{-2 (g_1 + g_2)}), it neither overflows nor cancels at high frequency. It is one
 // transfer function, applied to the whole record at once: Q is as low as 15, so that all memory ends within a few dozen of the
 // torsional periods, and zeros behind the record keep its end out of its beginning.

@@ -59,7 +59,7 @@ TEST_CASE("the wire's material stands in for what was not measured") {
   r.string.density_kg_m3 = 7850;
   r.string.youngs_modulus_Pa = 2.0e11;
   const auto v = rosin::values_of(r);
-  // sheet, section 0: 4.168e-4 kg/m for steel of this radius
+  // 4.168e-4 kg/m for steel of this radius
   CHECK(v.linear_density_kg_m.value() == doctest::Approx(4.168e-4).epsilon(1e-3));
   CHECK(v.tension_N->value == doctest::Approx(4.168e-4 * 414.48 * 414.48).epsilon(1e-3));
   CHECK(v.bending_stiffness_Nm2->value == doctest::Approx(4.486e-5).epsilon(1e-3));

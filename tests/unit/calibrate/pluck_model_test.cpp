@@ -16,7 +16,7 @@ constexpr double position = 0.3;
 const rosin::band limits{30e3, 60e3};
 
 /// Force on the near end per newton at the contact, a stiff string between pinned ends, at a complex frequency s: propagating and
-/// evanescent wave (specification sheet 1.4; from y'' = 0 at both ends and F = T y' - B y''').
+/// evanescent wave (from y'' = 0 at both ends and F = T y' - B y''').
 complex end_force(complex s, double from_other_end) {
   const double epsilon = string.stiffness_s2(), L = 0.5 / string.fundamental_Hz;
   const complex w = s / complex(0, 1), q = rosin::phase_rate(w, complex(epsilon)), K = epsilon * q * q;

@@ -16,8 +16,8 @@ rosin::planned_plucks plan(double seconds) {
 
 }  // namespace
 
-// Specification sheet 6.0: a 1 N pluck at 0.3 of a violin's E string, 1 mN noise; nuisances projected out.
-TEST_CASE("what a pluck can tell apart is what the sheet's Fisher analysis says, and so is what it takes to be seen") {
+// An independent Fisher analysis: a 1 N pluck at 0.3 of a violin's E string, 1 mN noise; nuisances projected out.
+TEST_CASE("what a pluck can tell apart is what another Fisher analysis says, and so is what it takes to be seen") {
   const rosin::string_facts facts{660, 128000, 54e3, 0.175, 0.314, 1};
   const std::vector<rosin::pluck_effect> effects{rosin::slow_release_effect(facts), rosin::pluck_width_effect(facts), rosin::skew_effect(facts), rosin::crosstalk_effect(facts),
                                                  rosin::point_mass_effect(facts)};

@@ -36,7 +36,7 @@ double worst(const rosin::fir& k, const Wanted& wanted) {
 }  // namespace
 
 TEST_CASE("lengths of exact-phase kernels") {
-  // Specification of the paper's string: taps for an error of 1e-2, 1e-3, 1e-4, 1e-5 (specification sheet, 1.3 d).
+  // The paper's string: taps for an error of 1e-2, 1e-3, 1e-4, 1e-5.
   struct row {
     double beta;
     std::array<std::size_t, 4> most;
