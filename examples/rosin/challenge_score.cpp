@@ -157,7 +157,7 @@ std::string to_markdown(const std::vector<rig_score>& scores, const std::string&
     if (s.held_out_over_floor > 0 && s.verdict == "explained") floors.push_back(s.held_out_over_floor);
   }
   std::string out = how + "\n\nNamed right: " + share(right, scores.size()) + ". End, channel and position right where the effect was named: " + share(placed, with_place) +
-                    ". 95 % intervals that cover: " + share(covered, intervals) + ". Held-out residual over the noise floor, median: " + figure(median(floors)) +
+                    ". 95 % intervals that cover: " + share(covered, intervals) + ". Held-out residual over the noise floor, median: " + (floors.empty() ? "-" : figure(median(floors))) +
                     ". Seconds a rig, median: " + figure(median(seconds)) + ".\n\n| hidden | named right | placed right | errors, median | intervals that cover | said instead |\n|---|---|---|---|---|---|\n";
   for (const auto& [hidden, rigs] : by) {
     std::size_t ok = 0, place_ok = 0, places = 0, in = 0, of = 0;

@@ -57,7 +57,7 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
   keep_calibrated(calibration, *plucks);
   if (plucks->takes.empty()) return wrong("calibration has none of the plucks that " + rig.file + " names");
   corrected_model out{path, {}, 0, 0, {}, {}, from};
-  const rosin::pluck_layout layout(plucks->takes, plucks->options);
+  const rosin::pluck_layout layout(plucks->takes, plucks->options, plucks->guess.ends);
   const double rate = plucks->takes.front().rate_Hz, pitch = value_of(calibration, layout.name(rosin::pluck_layout::fundamental))[0];
   const rosin::string_facts facts{pitch, rate, 0.45 * rate, values.impedance_Ns_m->value, values.length_m ? values.length_m->value : 0, plucks->takes.size()};
   try {

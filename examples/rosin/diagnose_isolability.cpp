@@ -20,6 +20,10 @@ rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, doubl
   plan.guess = guess_of(rig, values);
   plan.options = options_for(physics);
   if (!plan.options.stiffness) plan.guess.inharmonicity = 0;
+  std::vector<std::string> remarks;
+  auto ends = ends_as_modes(rig, values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, remarks);
+  if (!ends) return rosin::failure{ends.error()};
+  plan.guess.ends = *std::move(ends);
   plan.noise_N = noise_N;
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;
   const rosin::band limits = plan.options.limits_for(rate_Hz);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose_parts.hpp"
 #include "pluck_input.hpp"
+#include "rig_ends.hpp"
 
 namespace tool {
 
@@ -14,6 +15,9 @@ rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin:
     out.takes.pop_back();
   }
   if (!out.options.stiffness) out.guess.inharmonicity = 0;
+  auto ends = ends_as_modes(rig, values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, out.warnings);
+  if (!ends) return rosin::failure{ends.error()};
+  out.guess.ends = *std::move(ends);
   return out;
 }
 

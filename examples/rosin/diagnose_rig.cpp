@@ -158,7 +158,8 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   d.title = rig.title.value_or(rig.file);
   const rosin::rig_values values = rosin::values_of(rig);
   d.assumed = values.assumed;
-  if (any_end_moves(rig)) d.warnings.push_back(rig.file + ": terminations: both ends are taken for rigid, so that what is declared of them comes out as support-resonance");
+  for (const std::size_t end : {0U, 1U})
+    if (to_be_fitted(rig, end)) d.assumed.push_back(std::string{"terminations."} + (end == 0 ? "near" : "far") + " = \"fit\": begins as rigid; what moves there is named");
   const auto plucks = diagnose_plucks_of(rig, values, from, d.warnings, without);
   step();
   if (!plucks) return rosin::failure{plucks.error()};

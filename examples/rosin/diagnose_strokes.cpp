@@ -130,7 +130,7 @@ rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, cons
   return rosin::find_tension_drift(takes, limits, rate);
 }
 
-bool is_plain(const rosin::pluck_diagnosis& plucks) { return rosin::string_is_plain(plucks.best.effects); }
+bool is_plain(const rosin::pluck_diagnosis& plucks) { return rosin::string_is_plain(plucks.data.guess, plucks.best.effects); }
 
 rosin::contact_model declared_contact(const rosin::rig& rig) {
   rosin::contact_model model;

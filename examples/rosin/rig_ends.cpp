@@ -25,6 +25,10 @@ std::string place_of(const rosin::rig& rig, std::size_t which) {
   return rig.file + ": terminations." + (which == 0 ? "near" : "far") + (end && end->kind == form::table ? ": " + end->file : "");
 }
 
+std::string no_impedance(const rosin::rig& rig) {
+  return rig.file + ": terminations: length_m and tension_N (or impedance_Ns_m) are needed to set an admittance against the string's";
+}
+
 rosin::outcome<rosin::table_termination> completed(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
   std::vector<rosin::measured_admittance> table;
   for (const auto& p : t.admittance) table.push_back({p.frequency_Hz, {p.re_m_sN, p.im_m_sN}});
@@ -95,19 +99,17 @@ bool any_end_moves(const rosin::rig& rig) {
 rosin::outcome<moving_end> declared_end(const rosin::rig& rig, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
   const auto& end = end_of(rig, which);
   if (!end || end->kind == form::rigid || end->kind == form::fit) return moving_end{};
-  if (!(impedance_Ns_m > 0))
-    return rosin::failure{rig.file + ": terminations: length_m and tension_N (or impedance_Ns_m) are needed to set an admittance against the string's"};
+  if (!(impedance_Ns_m > 0)) return rosin::failure{no_impedance(rig)};
   if (end->kind == form::table) return end_of_table(rig, *end, which, impedance_Ns_m, remarks);
   return end_of_modes(declared_modes(*end, impedance_Ns_m));
 }
 
-rosin::outcome<std::array<rosin::modal_termination, 2>> simulated_ends(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks) {
+rosin::outcome<std::array<rosin::modal_termination, 2>> ends_as_modes(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks) {
   std::array<rosin::modal_termination, 2> out;
   for (std::size_t which = 0; which < 2; ++which) {
     const auto& end = end_of(rig, which);
-    if (!end || end->kind == form::rigid) continue;
-    if (end->kind == form::fit)
-      return rosin::failure{place_of(rig, which) + ": \"fit\" cannot be simulated: it asks the plucks, and there are none yet; declare \"rigid\", modes or a file"};
+    if (!end || end->kind == form::rigid || end->kind == form::fit) continue;
+    if (!(impedance_Ns_m > 0)) return rosin::failure{no_impedance(rig)};
     if (end->kind == form::modes) {
       out[which] = declared_modes(*end, impedance_Ns_m);
       continue;
@@ -117,6 +119,13 @@ rosin::outcome<std::array<rosin::modal_termination, 2>> simulated_ends(const ros
     out[which] = *std::move(modes);
   }
   return out;
+}
+
+rosin::outcome<std::array<rosin::modal_termination, 2>> simulated_ends(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks) {
+  for (const std::size_t which : {0U, 1U})
+    if (to_be_fitted(rig, which))
+      return rosin::failure{place_of(rig, which) + ": \"fit\" cannot be simulated: it asks the plucks, and there are none yet; declare \"rigid\", modes or a file"};
+  return ends_as_modes(rig, impedance_Ns_m, remarks);
 }
 
 }  // namespace tool

@@ -37,7 +37,10 @@ struct fitted_ends {
 
 /// As declared; rigid where it is declared so, or to be fitted. What had to be done to a table is said in `remarks`.
 [[nodiscard]] rosin::outcome<moving_end> declared_end(const rosin::rig& rig, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks);
-/// Both as a simulation steps them: modes as they are, a table by modes that answer as it does (`remarks` tells how well). "fit" fails.
+/// Both as a diagnosis knows them: modes as they are, a table by modes that answer as it does (`remarks` tells how well), rigid where they are to
+/// be fitted.
+[[nodiscard]] rosin::outcome<std::array<rosin::modal_termination, 2>> ends_as_modes(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks);
+/// Both as a simulation steps them: the same; "fit" fails.
 [[nodiscard]] rosin::outcome<std::array<rosin::modal_termination, 2>> simulated_ends(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks);
 [[nodiscard]] moving_end end_of_modes(const rosin::modal_termination& modes);
 [[nodiscard]] bool any_end_moves(const rosin::rig& rig);

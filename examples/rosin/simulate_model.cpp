@@ -127,6 +127,17 @@ void put_string(const diagnosed_model& model, simulation_plan& plan) {
   if (value_of(model, "convention").value_or(-1) > 0) plan.rig.damping = rosin::damping_convention::kelvin_voigt;
 }
 
+/// Declared terminations, by as much as the plucks say that they are off (pluck_layout.hpp).
+void put_ends(const diagnosed_model& model, simulation_plan& plan) {
+  for (const std::size_t end : {0U, 1U})
+    for (std::size_t i = 0; auto& mode : plan.burden.string.ends[end].modes) {
+      const std::string of = std::string(" of ") + (end == 0 ? "near" : "far") + " end's mode " + std::to_string(++i);
+      mode.frequency_Hz *= std::exp(value_of(model, "ln_frequency" + of).value_or(0));
+      mode.q *= std::exp(value_of(model, "ln_q" + of).value_or(0));
+      mode.per_mass_per_s *= std::exp(value_of(model, "ln_per_mass" + of).value_or(0));
+    }
+}
+
 /// Position of every place that was plucked and fitted, in the order in which a calibration counts them.
 std::vector<std::pair<double, double>> fitted_positions(const diagnosed_model& model, const rosin::rig& rig) {
   std::vector<std::pair<double, double>> out;
@@ -199,8 +210,8 @@ rosin::rig with_model(rosin::rig rig, const diagnosed_model& model) {
       if (const auto area = given("area_per_newton_m2"); area && take.normal_force_N && !rig.friction->contact_radius_m)
         rig.friction->contact_radius_m = std::sqrt(*area * *take.normal_force_N / std::numbers::pi);
   }
-  for (auto* end : {&rig.near, &rig.far})  // a diagnosis begins with rigid ends: what moves there is among its effects
-    if (*end) (*end)->kind = rosin::termination::form::rigid;
+  for (auto* end : {&rig.near, &rig.far})  // what moves there is among the effects that were found
+    if (*end && (*end)->kind == rosin::termination::form::fit) (*end)->kind = rosin::termination::form::rigid;
   auto how = rig.simulate.value_or(rosin::simulate_section{});
   double longest_s = 0;
   for (const auto& take : rig.takes) {
@@ -216,6 +227,7 @@ rosin::rig with_model(rosin::rig rig, const diagnosed_model& model) {
 
 std::optional<rosin::failure> apply_model(const diagnosed_model& model, const rosin::rig& rig, simulation_plan& plan) {
   put_string(model, plan);
+  put_ends(model, plan);
   put_takes(model, rig, plan);
   for (const auto& e : model.effects) {
     const auto how = can_be_put().find(e.name);

@@ -96,6 +96,16 @@ read -r off_N off_m_s < <(delta fitted.csv delta)
 holds "$off_N < 0.007 && $off_N < 0.5 * $rigid_N"
 holds "$off_m_s < 0.007 && $off_m_s < 0.5 * $rigid_m_s"
 
+# a diagnosis begins with what is declared, and names what is not; a corrected model keeps both
+expect 0 diagnose made --json declared.json
+says "no-mismatch"
+expect 0 diagnose rigid --json named.json
+says "explained" "support-resonance, far end"
+for end in made rigid; do
+  expect 0 simulate $end --model "$([ $end = made ] && echo declared || echo named).json" --out $end-again
+  grep -A 6 '"terminations"' $end-again-truth/truth.json | grep -q '"mass_kg": 0.00\(39\|40\)' || { echo "FAILED: the corrected model of $end has lost the termination"; failures=$((failures + 1)); }
+done
+
 # the same end as a file: the same motion, but for what a table cannot hold
 awk 'BEGIN {
   print "frequency_Hz,admittance_re,admittance_im"

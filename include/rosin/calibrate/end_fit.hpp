@@ -18,9 +18,10 @@ namespace rosin {
 
 struct end_options {
   std::array<bool, 2> free_ends{true, true};  ///< which ends are fitted
-  std::array<known_admittance, 2> known;      ///< what is declared of them besides
+  std::array<known_admittance, 2> known{};    ///< what is declared of them besides; empty: what the guess says
   std::size_t most_modes = 24;
   double least_gain = 14;                     ///< of ln L, for a further mode: as in the search for missing physics
+  double most_residual = 0.6;                 ///< of the signal (rms); more is no string of this kind
 };
 
 /// One mode that was found.
@@ -41,10 +42,20 @@ struct end_fit_result {
 
 namespace detail {
 
+/// Empty for a rigid end.
+[[nodiscard]] inline known_admittance admittance_of(const modal_termination& end) {
+  if (end.modes.empty()) return {};
+  return [end](std::complex<double> s) {
+    std::complex<double> sum = 0;
+    for (const admittance_mode& m : end.modes) sum += m(s);
+    return sum;
+  };
+}
+
 class end_fitter {
 public:
   end_fitter(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options, const end_options& how, const pluck_start& start)
-      : takes_{takes}, how_{how}, d_{takes, guess, options, {remembered(how.known[0]), remembered(how.known[1])}, start} {}
+      : takes_{takes}, how_{how}, d_{takes, guess, options, {known(0, guess), known(1, guess)}, start} {}
 
   /// From a rough start to the whole record.
   [[nodiscard]] outcome<end_fit_result> run() {
@@ -63,6 +74,10 @@ public:
   }
 
 private:
+  [[nodiscard]] known_admittance known(std::size_t end, const pluck_guess& guess) const {
+    return remembered(how_.known[end] ? how_.known[end] : admittance_of(guess.ends[end]));
+  }
+
   /// A mode that matters shows within so many periods; looking for it in more of them takes long.
   static constexpr double clear_periods = 12;
 
@@ -166,7 +181,7 @@ private:
       if (uncertain) out.covariance(at + 2, at + 2) += 1;
       out.ends[d_.model().mode_end[i]].modes.push_back(m);
     }
-    if (!out.plucks.value.allFinite() || worst(f) > 0.6) return failure{takes_.front().name + ": the plucks do not ring as the declared string should, nor with ends that give way"};
+    if (!out.plucks.value.allFinite() || worst(f) > how_.most_residual) return failure{takes_.front().name + ": the plucks do not ring as the declared string should, nor with ends that give way"};
     return out;
   }
 

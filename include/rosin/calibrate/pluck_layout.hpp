@@ -5,12 +5,14 @@
 //
 //     f0, b, 1/Q, internal loss, air loss, psi, ln gain near, ln gain far,     shared by all takes
 //     one position for each declared position,
-//     per take: instant of release, ln strength, offset near, offset far.
+//     per take: instant of release, ln strength, offset near, offset far,
+//     where terminations are known to move, of each mode: ln of frequency, q and Z / M over what is declared.
 //
 #pragma once
 
 #include <rosin/calibrate/pluck_model.hpp>
 #include <rosin/core/outcome.hpp>
+#include <rosin/propagate/termination.hpp>
 
 #include <Eigen/Dense>
 
@@ -39,6 +41,7 @@ struct pluck_guess {
   double quality = 1000;
   std::array<double, 2> gain_tolerance{0.05, 0.05};   ///< relative limits
   std::array<double, 2> ac_coupled_Hz{0, 0};          ///< 0: DC coupled
+  std::array<modal_termination, 2> ends{};            ///< terminations that are known to move; fit_plucks() takes them for rigid, fit_ends() and a diagnosis do not
 };
 
 /// Which nuisances are free, and which band is used.
@@ -64,7 +67,8 @@ public:
   enum per_take { release, strength, offset_near, offset_far, take_size };
 
   pluck_layout() = default;
-  pluck_layout(const std::vector<pluck_take>& takes, const pluck_options& options) : options_{options} {
+  /// `ends`: for fits whose model has ends (scene_plucks.hpp).
+  pluck_layout(const std::vector<pluck_take>& takes, const pluck_options& options, const std::array<modal_termination, 2>& ends = {}) : options_{options}, ends_{ends} {
     for (const pluck_take& take : takes) {
       auto found = std::find(positions_.begin(), positions_.end(), take.position);
       group_.push_back(found - positions_.begin());
@@ -73,7 +77,8 @@ public:
     }
   }
 
-  [[nodiscard]] Eigen::Index size() const { return at(group_.size(), 0); }
+  [[nodiscard]] Eigen::Index size() const { return first_of_ends() + 3 * static_cast<Eigen::Index>(ends_[0].modes.size() + ends_[1].modes.size()); }
+  [[nodiscard]] Eigen::Index first_of_ends() const { return at(group_.size(), 0); }
   [[nodiscard]] std::size_t takes() const { return group_.size(); }
   /// Declared positions, one for each that is fitted.
   [[nodiscard]] const std::vector<double>& positions() const { return positions_; }
@@ -88,7 +93,7 @@ public:
   }
   /// Gains and strengths: only their products show.
   [[nodiscard]] bool is_scale(Eigen::Index p) const {
-    return p == gain_near || p == gain_far || (p >= at(0, 0) && (p - at(0, 0)) % take_size == strength);
+    return p == gain_near || p == gain_far || (p >= at(0, 0) && p < first_of_ends() && (p - at(0, 0)) % take_size == strength);
   }
 
   [[nodiscard]] std::string name(Eigen::Index p) const {
@@ -97,13 +102,14 @@ public:
     static constexpr std::array mine{"release_s", "ln_strength", "offset_near_N", "offset_far_N"};
     if (p < first_position) return names[static_cast<std::size_t>(p)];
     if (p < at(0, 0)) return positions_.size() == 1 ? "position" : "position " + std::to_string(p - first_position + 1);
+    if (p >= first_of_ends()) return name_of_end(static_cast<std::size_t>(p - first_of_ends()));
     const auto i = static_cast<std::size_t>(p - at(0, 0));
     return std::string(mine[i % take_size]) + " of " + names_[i / take_size];
   }
 
   /// Whether this take depends on this parameter.
   [[nodiscard]] bool concerns(Eigen::Index p, std::size_t take) const {
-    return p < at(0, 0) || p >= at(takes(), 0) || (p >= at(take, 0) && p < at(take + 1, 0));
+    return p < at(0, 0) || p >= first_of_ends() || (p >= at(take, 0) && p < at(take + 1, 0));
   }
   [[nodiscard]] double release_s(const Eigen::VectorXd& v, std::size_t take) const { return v[at(take, release)]; }
 
@@ -126,12 +132,25 @@ public:
     return {v[fundamental], v[inharmonicity], {1 / v[inverse_quality], v[internal_loss], v[air_loss]}, v[convention]};
   }
 
+  /// The terminations: what is declared, and how far it is off.
+  [[nodiscard]] std::array<modal_termination, 2> ends(const Eigen::VectorXd& v) const {
+    auto out = ends_;
+    Eigen::Index p = first_of_ends();
+    for (modal_termination& end : out)
+      for (admittance_mode& m : end.modes) {
+        m.frequency_Hz *= std::exp(v[p]), m.q *= std::exp(v[p + 1]), m.per_mass_per_s *= std::exp(v[p + 2]);
+        p += 3;
+      }
+    return out;
+  }
+
   /// Steps for numerical derivatives of poles and residues: small against what each parameter can be known to.
   [[nodiscard]] double step(Eigen::Index p, const Eigen::VectorXd& v) const {
     static constexpr std::array common{0.0, 1e-9, 1e-8, 1e-12, 1e-6, 1e-4, 1e-6, 1e-6};
     static constexpr std::array mine{1e-9, 1e-6, 1e-6, 1e-6};
     if (p == fundamental) return 1e-7 * v[p];
     if (p < first_position) return common[static_cast<std::size_t>(p)];
+    if (p >= first_of_ends()) return 1e-5;
     return p < at(0, 0) ? 1e-7 : mine[static_cast<std::size_t>(p - at(0, 0)) % take_size];
   }
 
@@ -143,6 +162,7 @@ public:
     if (p == gain_near || p == gain_far) return {0, guess.gain_tolerance[static_cast<std::size_t>(p - gain_near)] / 2};
     if (p == convention) return {0, 1.5};  // conventions lie between -1 and 1
     if (p == inharmonicity && options_.stiffness && guess.inharmonicity > 0) return {guess.inharmonicity, 0.3 * guess.inharmonicity};  // for what does not tell it yet: short looks, few partials
+    if (p >= first_of_ends()) return {0, end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3] / 2};
     if (p < at(0, 0) || !is_scale(p)) return {0, 0};
     const pluck_take& take = takes[static_cast<std::size_t>(p - at(0, 0)) / take_size];
     return {std::log(take.strength_N), take.strength_tolerance / 2};
@@ -172,14 +192,28 @@ public:
     for (std::size_t t = 0; t < group_.size(); ++t)
       ok = ok && v[position(t)] > 0.002 && v[position(t)] < 0.998 && std::abs(v[position(t)] - start[position(t)]) < 0.06 &&
            std::abs(v[at(t, release)] - start[at(t, release)]) * start[fundamental] < 0.1;
-    return ok;
+    return ok && ends_within_doubt(v, 2);
+  }
+  [[nodiscard]] bool ends_within_doubt(const Eigen::VectorXd& v, double times = 1) const {
+    for (Eigen::Index p = first_of_ends(); p < size(); ++p)
+      if (!(std::abs(v[p]) <= times * end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3])) return false;
+    return true;
   }
 
+  static constexpr std::array end_doubt{0.01, 0.2, 0.1};  ///< how well a declared mode is known: frequency, q, mass, relative limits; twice that is another mode
+
 private:
+  [[nodiscard]] std::string name_of_end(std::size_t i) const {
+    static constexpr std::array of_mode{"ln_frequency", "ln_q", "ln_per_mass"};
+    const std::size_t mode = i / 3, near = ends_[0].modes.size();
+    return std::string(of_mode[i % 3]) + " of " + (mode < near ? "near" : "far") + " end's mode " + std::to_string(mode < near ? mode + 1 : mode - near + 1);
+  }
+
   pluck_options options_{};
   std::vector<double> positions_;
   std::vector<Eigen::Index> group_;
   std::vector<std::string> names_;
+  std::array<modal_termination, 2> ends_{};
 };
 
 /// Inverse over the free parameters; rows and columns of the fixed ones are zero.

@@ -52,7 +52,7 @@ namespace detail {
 /// Recordings that a scene gives, all takes and channels in one column, from the release on.
 class planned_recordings {
 public:
-  explicit planned_recordings(const planned_plucks& plan) : plan_{plan}, layout_{plan.takes, plan.options} {
+  explicit planned_recordings(const planned_plucks& plan) : plan_{plan}, layout_{plan.takes, plan.options, plan.guess.ends} {
     std::vector<double> release, position;
     for (const auto& t : plan.takes) release.push_back(release_s), position.push_back(t.position);
     value_ = layout_.initial(plan.takes, plan.guess, plan.guess.fundamental_Hz, release, position);

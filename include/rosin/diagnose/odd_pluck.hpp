@@ -154,7 +154,7 @@ inline std::array<double, 2> first_off(const take_and_model& t, double fundament
 
 /// What the declared model leaves of the worst of these takes; 1 where it cannot be fitted to all of their decay.
 inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {
-  const auto fit = fit_plucks(takes, guess, options, 0.95);
+  const auto fit = fit_declared(takes, guess, options);
   return fit && fit->horizon_periods > 1e8 ? worst(*fit) : 1.0;
 }
 
@@ -186,7 +186,7 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
   odd.before = seen[0], odd.floor = seen[1];
   if (!(odd.before > clearly_off * odd.floor)) return std::nullopt;
   for (const pluck_take& take : all) odd.strongest = odd.strongest && take.strength_N <= odd.take.strength_N;
-  if (const auto own = fit_plucks({odd.take}, guess, options, 0.95)) odd.own_fundamental_Hz = own->value[pluck_layout::fundamental];
+  if (const auto own = detail::fit_declared({odd.take}, guess, options)) odd.own_fundamental_Hz = own->value[pluck_layout::fundamental];
   odd.ringing = detail::compare_late(odd.others, odd.take);
   if (odd.ringing.rate_Hz > 0) odd.time_s = detail::first_off(odd.ringing, odd.others.best.value[pluck_layout::fundamental]);
   detail::search_loss(odd);

@@ -195,7 +195,7 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
     std::vector<fit_stage> rest;
     rest.reserve(3);
     if (strong) rest.push_back({1000, 40, true}), rest.push_back({});
-    const bool corrects = std::any_of(f.effects.begin(), f.effects.end(), [](const pluck_effect& e) {
+    const bool corrects = data.layout.size() > data.layout.first_of_ends() || std::any_of(f.effects.begin(), f.effects.end(), [](const pluck_effect& e) {
       return std::any_of(e.parameters.begin(), e.parameters.end(), [](const effect_parameter& p) { return p.late; });
     });
     if (corrects) rest.push_back({1000, 1e9, true, freedom::all});

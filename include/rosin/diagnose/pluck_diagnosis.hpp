@@ -77,6 +77,7 @@ public:
       : d_{d}, all_{all}, weigh_{d.declared.noise_N},
         now_{{}, d.declared.value, d.declared.sd, d.declared.covariance, {}, {}, d.declared.horizon_periods, 0, true} {
     now_.quality.residual_ratio = d.declared.residual_ratio;
+    if (d.data.layout.size() > d.data.layout.first_of_ends()) correct_ends();
   }
 
   void run(int most_effects) {
@@ -92,6 +93,11 @@ public:
   [[nodiscard]] double noise() const { return rms_of(noise_); }
 
 private:
+  /// Declared terminations, as far off as they may be: what takes them further is none of theirs.
+  void correct_ends() {
+    scene_fit tried = fit_scene(d_.data, {}, now_.value, {{1000, 1e9, true, freedom::all}}, weigh_);
+    if (d_.data.layout.ends_within_doubt(tried.value)) now_ = std::move(tried);
+  }
   /// A model against the one before: gain in ln L, divided by the misfit that is left, and what either leaves beyond the noise.
   struct comparison {
     double temper = 1, gain = 0, left = 0, was = 0, samples = 0;
@@ -112,7 +118,7 @@ private:
     return !again.empty() && share_left(d_.data, now_, again, weigh_) < left ? again : fits;
   }
   void leave_alone() {
-    d_.base = fit_scene(d_.data, {}, now_.value, {{1000, now_.horizon_periods, true}}, weigh_);
+    d_.base = fit_scene(d_.data, {}, now_.value, {{1000, now_.horizon_periods, true, freedom::all}}, weigh_);
     noise_ = d_.base.quality.noise;
     d_.ranking.push_back({{}, 0.0});
   }
@@ -209,14 +215,30 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
 
 }  // namespace detail
 
+namespace detail {
+
+/// The declared model by itself: a string between ends that are rigid, or that move as is known.
+[[nodiscard]] inline outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {
+  constexpr double most_residual = 0.95;  // a heavy bead leaves little of the declared string
+  if (guess.ends[0].modes.empty() && guess.ends[1].modes.empty()) return fit_plucks(takes, guess, options, most_residual);
+  auto fit = fit_ends(takes, guess, options, {.free_ends = {false, false}, .most_residual = most_residual});
+  if (!fit) return failure{fit.error()};
+  return std::move(fit->plucks);
+}
+
+}  // namespace detail
+
 /// `catalogue_for`: effects that the declared model does not contain. Takes in `held` are predicted only.
 [[nodiscard]] inline outcome<pluck_diagnosis> diagnose_plucks(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
                                                               const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
                                                               int most_effects = 3) {
-  constexpr double most_residual = 0.95;  // a heavy bead leaves little of the declared string
-  auto declared = fit_plucks(takes, guess, options, most_residual);
+  auto declared = detail::fit_declared(takes, guess, options);
   if (!declared) return failure{declared.error()};
-  pluck_diagnosis d{{takes, guess, options, declared->layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
+  const pluck_layout layout(takes, options, guess.ends);
+  pluck_diagnosis d{{takes, guess, options, layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
+  d.declared.layout = layout;
+  d.declared.value.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size())), d.declared.sd.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size()));
+  d.declared.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(layout.size(), layout.size()));
   const std::vector<pluck_effect> all = catalogue_for(*declared);
   detail::effect_search search(d, all);
   search.run(most_effects);

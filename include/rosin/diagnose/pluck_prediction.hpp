@@ -81,7 +81,7 @@ struct seen_take {
 
 /// By its first `most_periods`; nothing where no release is found.
 inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit, const pluck_take& held, double most_periods = 1e9) {
-  seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options)}, {}, {}};
+  seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options, data.guess.ends)}, {}, {}};
   const auto start = find_start(out.data.takes, data.guess);
   if (!start) return std::nullopt;
   Eigen::VectorXd v(out.data.layout.size());
@@ -95,6 +95,7 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
   v[out.data.layout.at(0, pluck_layout::strength)] = std::log(held.strength_N);
   v[out.data.layout.at(0, pluck_layout::offset_near)] = from(pluck_layout::offset_near);
   v[out.data.layout.at(0, pluck_layout::offset_far)] = from(pluck_layout::offset_far);
+  v.tail(out.data.layout.size() - out.data.layout.first_of_ends()) = fit.value.segment(data.layout.first_of_ends(), data.layout.size() - data.layout.first_of_ends());
   std::vector<pluck_effect> effects;
   Eigen::Index at = data.layout.size();
   double horizon = std::min(most_periods, fit.horizon_periods);

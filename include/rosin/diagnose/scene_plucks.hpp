@@ -55,7 +55,7 @@ private:
 [[nodiscard]] inline double to_fitted(const effect_parameter& p, double physical) { return p.logarithmic ? std::log(physical) : physical; }
 [[nodiscard]] inline double to_physical(const effect_parameter& p, double fitted) { return p.logarithmic ? std::exp(fitted) : fitted; }
 
-/// Which parameters a fit moves. Of a take that is only predicted, release and strength alone.
+/// Which parameters a fit moves. Corrections: late parameters, and how far declared terminations are off. Of a take that is only predicted, release and strength alone.
 enum class freedom { all, no_corrections, release_only };
 
 class scene_plucks : public pluck_layout {
@@ -78,8 +78,9 @@ public:
   }
   [[nodiscard]] bool is_free(Eigen::Index p) const {
     if (free_ == freedom::release_only)
-      return p >= plain_size() ? added(p).take >= 0 : p >= at(0, 0) && (p - at(0, 0)) % take_size <= static_cast<Eigen::Index>(pluck_layout::strength);
-    return p >= plain_size() ? !added(p).by_score && (free_ == freedom::all || !added(p).late) : pluck_layout::is_free(p);
+      return p >= plain_size() ? added(p).take >= 0 : p >= at(0, 0) && p < first_of_ends() && (p - at(0, 0)) % take_size <= static_cast<Eigen::Index>(pluck_layout::strength);
+    if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_ends())) return false;
+    return p >= plain_size() ? !added(p).by_score : pluck_layout::is_free(p);
   }
   [[nodiscard]] bool is_scale(Eigen::Index p) const { return p < plain_size() && pluck_layout::is_scale(p); }
   [[nodiscard]] bool concerns(Eigen::Index p, std::size_t take) const {
@@ -101,7 +102,8 @@ public:
   [[nodiscard]] pluck_scene scene(const Eigen::VectorXd& v, int take) const {
     pluck_scene s;
     s.string = string(v);
-    for (std::size_t c = 0; c < 2; ++c) s.sensors[c].corner_Hz = corner_Hz_[c];
+    const auto moving = ends(v);
+    for (std::size_t c = 0; c < 2; ++c) s.sensors[c].corner_Hz = corner_Hz_[c], s.ends[c].modes = moving[c].modes;
     Eigen::Index at = plain_size();
     for (const auto& e : effects_) {
       std::vector<double> values;
@@ -142,8 +144,9 @@ public:
 private:
   /// What the poles depend on.
   [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v, const pluck_scene& s) const {
-    Eigen::VectorXd k(gain_near + v.size() - plain_size() + 1);
-    k << v.head(gain_near), v.tail(v.size() - plain_size()), s.string.fundamental_Hz;
+    const Eigen::Index more = v.size() - first_of_ends();
+    Eigen::VectorXd k(gain_near + more + 1);
+    k << v.head(gain_near), v.tail(more), s.string.fundamental_Hz;
     return k;
   }
 

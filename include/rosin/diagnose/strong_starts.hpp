@@ -38,7 +38,9 @@ inline void add_support_starts(const scene_data& data, const std::vector<pluck_e
   end_options one;
   one.most_modes = 1;
   const auto fitted = fit_ends(data.takes, data.guess, data.options, one);
-  if (!fitted || fitted->modes.empty() || fitted->plucks.value.size() != data.layout.size()) return;
+  if (!fitted || fitted->modes.empty() || fitted->plucks.value.size() != data.layout.first_of_ends()) return;
+  Eigen::VectorXd value = Eigen::VectorXd::Zero(data.layout.size());  // known ends as declared
+  value.head(data.layout.first_of_ends()) = fitted->plucks.value;
   const admittance_mode& mode = fitted->modes.front().mode;
   for (const pluck_effect& e : catalogue) {
     if (!supports(e)) continue;
@@ -46,7 +48,7 @@ inline void add_support_starts(const scene_data& data, const std::vector<pluck_e
     const std::array<double, 4> unit{1000, 10, 1, 0};
     e.apply(probe, unit.data(), 0);
     const double per_mass = probe.ends[static_cast<std::size_t>(e.place)].modes.front().per_mass_per_s;
-    out.push_back({e.id(), extended(data.layout, fitted->plucks.value, e, {mode.frequency_Hz, mode.q, mode.per_mass_per_s / per_mass, 0})});
+    out.push_back({e.id(), extended(data.layout, value, e, {mode.frequency_Hz, mode.q, mode.per_mass_per_s / per_mass, 0})});
   }
 }
 

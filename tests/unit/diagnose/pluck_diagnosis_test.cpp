@@ -4,12 +4,15 @@
 
 #include "plucked.hpp"
 
+#include <rosin/simulate/burdened_signals.hpp>
+
 #include <doctest/doctest.h>
 
 namespace {
 
-rosin::outcome<rosin::pluck_diagnosis> look(const std::vector<rosin::pluck_take>& takes, const rosin::pluck_take& held) {
-  return rosin::diagnose_plucks(takes, {held}, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+rosin::outcome<rosin::pluck_diagnosis> look(const std::vector<rosin::pluck_take>& takes, const rosin::pluck_take& held,
+                                             const std::array<rosin::modal_termination, 2>& ends = {}) {
+  return rosin::diagnose_plucks(takes, {held}, {.fundamental_Hz = 660, .ends = ends}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
     const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};
     auto all = rosin::catalogue_without({"bending-stiffness"}, facts, fit.limits);
     // Scans over frequency and place, and searches for poles, are what takes long; here they are not what is tested.
@@ -101,4 +104,37 @@ TEST_CASE("a clock that wavers is a mismatch, though nothing of it shows at the 
   CHECK_FALSE(d->explained);
   CHECK(d->before > 3 * d->floor);
   CHECK(d->mismatch.residual_over_noise > 3);
+}
+
+TEST_CASE("ends that are known to move are part of the declared model: nothing is missing, or what is besides") {
+  const double impedance = test::plucked_rig.string.impedance_Ns_m();
+  rosin::rig_burden burden;
+  burden.string.ends[1].modes = {{2400, 12, impedance / 0.01}, {470, 30, impedance / 0.1}};
+  const auto pluck = [&](double force_N, std::uint64_t seed, double release_duration_s) {
+    const auto made = rosin::simulate_pluck(test::plucked_rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.06});
+    REQUIRE_MESSAGE(made, made.error());
+    return test::recorded(*made, force_N, seed);
+  };
+  for (const double slow : {0.0, 40e-6}) {
+    CAPTURE(slow);
+    const std::vector<rosin::pluck_take> takes{pluck(1, 1, slow), pluck(0.5, 2, slow)};
+    const auto held = pluck(0.75, 3, slow);
+    const auto d = look(takes, held, burden.string.ends);
+    REQUIRE_MESSAGE(d, d.error());
+    CHECK(d->explained);
+    CHECK(d->mismatched == (slow > 0));
+    REQUIRE(d->best.effects.size() == (slow > 0 ? 1 : 0));
+    CHECK(d->after < 1.2 * d->floor);
+    if (slow > 0) CHECK(d->best.effects[0].id() == "slow-release");
+    if (slow > 0) continue;
+    auto roughly = burden.string.ends;  // as a measurement may have it
+    roughly[1].modes[0].frequency_Hz *= 1.005, roughly[1].modes[0].q *= 0.9, roughly[1].modes[1].per_mass_per_s *= 1.05;
+    const auto almost = look(takes, held, roughly);
+    REQUIRE_MESSAGE(almost, almost.error());
+    CHECK_FALSE(almost->mismatched);
+    CHECK(almost->before < 1.2 * almost->floor);
+    CHECK(almost->data.layout.ends(almost->best.value)[1].modes[0].frequency_Hz == doctest::Approx(2400).epsilon(3e-4));
+    const auto rigid = look(takes, held);
+    CHECK((!rigid || rigid->before > 10 * d->before));
+  }
 }

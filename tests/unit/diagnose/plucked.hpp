@@ -16,17 +16,19 @@ namespace test {
 inline const rosin::modal_rig plucked_rig{
     .string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 900}}};
 
-/// Recorded by 16-bit converters with 0.3 mN of noise, the far channel late by `skew_s` (a fraction of the partials' phases).
-inline rosin::pluck_take modal_pluck(double force_N, std::uint64_t seed, double release_duration_s = 0, double position = 0.3) {
-  const auto made = rosin::simulate_pluck(plucked_rig, {.position = position, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.06});
+/// Recorded by 16-bit converters with 0.3 mN of noise.
+inline rosin::pluck_take recorded(const rosin::modal_take& made, double force_N, std::uint64_t seed) {
   rosin::pluck_take take;
   take.name = "pluck-" + std::to_string(seed);
-  take.rate_Hz = made->sample_rate_Hz;
+  take.rate_Hz = made.sample_rate_Hz;
   take.strength_N = force_N;
   take.position = 0.302;
   const rosin::converter sensor{.gain = 1, .newtons_per_full_scale = 1.65, .noise_N = 0.3e-3, .bits = 16};
-  take.force_N = {rosin::convert(made->force_near_N, take.rate_Hz, sensor, 2 * seed).newtons(), rosin::convert(made->force_far_N, take.rate_Hz, sensor, 2 * seed + 1).newtons()};
+  take.force_N = {rosin::convert(made.force_near_N, take.rate_Hz, sensor, 2 * seed).newtons(), rosin::convert(made.force_far_N, take.rate_Hz, sensor, 2 * seed + 1).newtons()};
   return take;
+}
+inline rosin::pluck_take modal_pluck(double force_N, std::uint64_t seed, double release_duration_s = 0, double position = 0.3) {
+  return recorded(*rosin::simulate_pluck(plucked_rig, {.position = position, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.06}), force_N, seed);
 }
 
 /// A pluck of a scene, from its own lines: for what has to come back exactly.
