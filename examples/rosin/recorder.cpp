@@ -8,6 +8,7 @@
 #include <fstream>
 #include <future>
 #include <iostream>
+#include <utility>
 
 namespace tool {
 
@@ -131,8 +132,12 @@ private:
     if (count == 0) return false;
     const bool first = report_.frames == 0;
     if (files_ != nullptr) {
+      const auto begin = std::chrono::steady_clock::now();
       if (first && !open()) return false;
-      if (const auto bad = file_->write(to_file.first(count * width))) return failed(*bad);
+      const auto bad = file_->write(to_file.first(count * width));
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+      writing_s_ += took.count(), report_.worst_write_s = std::max(report_.worst_write_s, took.count());
+      if (bad) return failed(*bad);
     }
     report_.frames += count;
     if (first && files_ != nullptr) named_ = std::async(std::launch::async, [this] { return files_->put(report_.take); });
@@ -153,10 +158,11 @@ private:
     return false;
   }
   void note_time(std::chrono::steady_clock::time_point begin, std::size_t frames) {
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    busy_s_ += took.count();
-    if (took.count() <= report_.worst_block_s) return;
-    report_.worst_block_s = took.count();
+    const std::chrono::duration<double> all = std::chrono::steady_clock::now() - begin;
+    busy_s_ += all.count();
+    const double took = all.count() - std::exchange(writing_s_, 0.0);
+    if (took <= report_.worst_block_s) return;
+    report_.worst_block_s = took;
     report_.worst_block_of_s = static_cast<double>(frames) / report_.format.sample_rate_Hz;
   }
   [[nodiscard]] std::vector<std::string> remarks() const {
@@ -176,7 +182,7 @@ private:
   std::optional<rosin::take_file<>> file_;
   std::future<std::optional<rosin::failure>> named_;
   meters_line line_;
-  double busy_s_ = 0;
+  double busy_s_ = 0, writing_s_ = 0;  ///< the latter of the block at hand
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -214,7 +220,7 @@ json to_json(const take_report& r) {
   return {{"take", r.take.name}, {"file", r.take.file()}, {"frames", r.frames}, {"duration_s", r.duration_s()},
           {"sampling_rate_Hz", r.format.sample_rate_Hz}, {"channels", r.format.channels}, {"bits", r.format.bits}, {"float", r.format.float_format},
           {"lost_frames", r.lost()}, {"gaps", gaps}, {"clipped", r.clipped}, {"problems", r.problems},
-          {"worst_block_s", r.worst_block_s}, {"worst_block_lasts_s", r.worst_block_of_s}, {"busy", r.busy}};
+          {"worst_block_s", r.worst_block_s}, {"worst_block_lasts_s", r.worst_block_of_s}, {"worst_write_s", r.worst_write_s}, {"busy", r.busy}};
 }
 
 std::string summary_of(const take_report& r) {
