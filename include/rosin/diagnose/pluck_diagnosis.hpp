@@ -93,15 +93,26 @@ public:
   [[nodiscard]] double noise() const { return rms_of(noise_); }
 
 private:
-  /// Declared terminations, as far off as they may be: what takes them further is none of theirs.
-  void correct_ends() {
-    scene_fit tried = fit_scene(d_.data, {}, now_.value, {{1000, 1e9, true, freedom::all}}, weigh_);
-    if (d_.data.layout.ends_within_doubt(tried.value)) now_ = std::move(tried);
-  }
   /// A model against the one before: gain in ln L, divided by the misfit that is left, and what either leaves beyond the noise.
   struct comparison {
     double temper = 1, gain = 0, left = 0, was = 0, samples = 0;
   };
+  /// Declared terminations, as far off as they may be: what takes them further is none of theirs. They count as an effect that was found: what
+  /// their motion does is what there was to explain.
+  void correct_ends() {
+    scene_data rigid{d_.data.takes, d_.data.guess, d_.data.options, pluck_layout(d_.data.takes, d_.data.options)};
+    rigid.guess.ends = {};
+    moving_ = fit_scene(rigid, {}, now_.value.head(rigid.layout.size()), {{1000, 1e9, true}}, weigh_);
+    scene_fit tried = fit_scene(d_.data, {}, now_.value, {{1000, 1e9, true, freedom::all}}, weigh_);
+    if (d_.data.layout.ends_within_doubt(tried.value)) now_ = std::move(tried);
+  }
+  /// Whether an effect takes away enough. Beside a strong one its own model's faults are worth something to others as well; but these leave most of
+  /// them. What a declared end is off by is no other mode of it.
+  [[nodiscard]] bool is_worth(const comparison& c, const pluck_effect& e, int round) const {
+    if (round == 0 && !moving_) return true;
+    const bool much = c.was > 1e-4 * all_there_was_, at_known_end = e.at_end && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
+    return c.left < c.was / 3 && (much || (!at_known_end && c.left < c.was / 30));
+  }
 
   [[nodiscard]] std::vector<scene_fit> candidates(int round) const {
     std::vector<pluck_effect> catalogue;
@@ -155,9 +166,8 @@ private:
     const scene_fit before = fit_scene(d_.data, now_.effects, now_.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh_);
     for (std::size_t c = 0; c < 2; ++c) noise_[c] = std::min({noise_[c], before.quality.noise[c], tried.quality.noise[c]});
     const comparison c = compare(before, tried);
-    if (round == 0) d_.base = before, all_there_was_ = c.was;
-    // Beside a strong effect its own model's faults are worth something to others as well; but these leave most of them.
-    const bool worth = round == 0 || (c.left < c.was / 3 && (c.was > 1e-4 * all_there_was_ || c.left < c.was / 30));
+    if (round == 0) d_.base = before, all_there_was_ = moving_ ? cost_of(*moving_, noise_) - c.samples : c.was;
+    const bool worth = is_worth(c, tried.effects.back(), round);
     for (const scene_fit& f : fits)
       if (worth || &f == &tried) rank(f, c);
     if (round == 0) rank(before, c);
@@ -172,6 +182,7 @@ private:
   const std::vector<pluck_effect>& all_;
   std::array<double, 2> weigh_, noise_{1e300, 1e300};
   scene_fit now_;
+  std::optional<scene_fit> moving_;  ///< where declared ends move: the same string on rigid ones
   double all_there_was_ = 0;
 };
 
@@ -205,7 +216,8 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
   const bool doubtful = !noise_seen && d.floor > much_noise;
   const bool complete = !doubtful && ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
-  d.mismatched = d.mismatched || left > 1.5 || modulated || doubtful || was > 0.6 * d.floor;
+  const bool known_ends = d.data.layout.size() > d.data.layout.first_of_ends();  // never known to the last digit
+  d.mismatched = d.mismatched || (left > 1.5 && !(known_ends && was <= 0.25 * d.floor)) || modulated || doubtful || was > 0.6 * d.floor;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   if (d.explained || excess <= 0.5 * was) return;
   d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it
