@@ -67,7 +67,7 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
     Eigen::VectorXd value = Eigen::VectorXd::Zero(count), sd = value;
     for (Eigen::Index p = 0; p < layout.size(); ++p) {
       const auto [v, s] = value_of(calibration, layout.name(p));
-      if (!std::isfinite(v)) return wrong("calibration has no \"" + layout.name(p) + "\": it was made of other takes than " + rig.file + " names");
+      if (!std::isfinite(v)) return wrong("calibration has no \"" + layout.name(p) + "\": it was made of other takes or terminations than " + rig.file + " names");
       value[p] = v, sd[p] = s;
     }
     Eigen::Index at = layout.size();

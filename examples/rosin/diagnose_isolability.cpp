@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose_rig.hpp"
 #include "pluck_input.hpp"
+#include "rig_ends.hpp"
 
 #include <rosin/acquire/rig_values.hpp>
 #include <rosin/diagnose/isolability.hpp>
@@ -21,15 +22,13 @@ rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, doubl
   plan.options = options_for(physics);
   if (!plan.options.stiffness) plan.guess.inharmonicity = 0;
   std::vector<std::string> remarks;
-  auto ends = ends_as_modes(rig, values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, remarks);
-  if (!ends) return rosin::failure{ends.error()};
-  plan.guess.ends = *std::move(ends);
+  if (auto why = add_known_ends(rig, values, plan.guess, remarks)) return *std::move(why);
   plan.noise_N = noise_N;
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;
   const rosin::band limits = plan.options.limits_for(rate_Hz);
   const rosin::string_facts facts{plan.guess.fundamental_Hz, rate_Hz, limits.stop_Hz, impedance, length, plan.takes.size()};
   const auto found = rosin::isolability_of(plan, rosin::catalogue_without(physics, facts, limits));
-  json out{{"rig", rig.title.value_or(rig.file)}, {"sampling_rate_Hz", rate_Hz}, {"noise_N", noise_N}, {"seconds", plan.duration_s}, {"assumed", values.assumed}};
+  json out{{"rig", rig.title.value_or(rig.file)}, {"sampling_rate_Hz", rate_Hz}, {"noise_N", noise_N}, {"seconds", plan.duration_s}, {"assumed", values.assumed}, {"warnings", remarks}};
   out["effects"] = json::array(), out["cosine"] = json::array(), out["classes"] = json::array();
   for (std::size_t i = 0; i < found.ids.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -51,6 +50,7 @@ rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, doubl
 std::string isolability_text(const json& j) {
   using rosin::detail::figure;
   std::string out = j.at("rig").get<std::string>() + ": what " + figure(1e3 * j.at("seconds").get<double>()) + " ms of its plucks can tell apart\n";
+  for (const auto& w : j.at("warnings")) out += "  " + w.get<std::string>() + "\n";
   for (const auto& e : j.at("effects")) {
     out += "  " + e.at("effect").get<std::string>();
     if (e.at("detectable").is_object())

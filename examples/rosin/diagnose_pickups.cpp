@@ -4,6 +4,7 @@
 //
 #include "diagnose_pickup_page.hpp"
 #include "progress.hpp"
+#include "rig_ends.hpp"
 
 #include <rosin/diagnose/pickup_diagnosis.hpp>
 
@@ -184,6 +185,7 @@ rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provena
   const rosin::rig_values values = rosin::values_of(rig);
   for (const auto& line : values.assumed)
     if (line.find("position") == std::string::npos && line.find("gain") == std::string::npos && line.find("force") == std::string::npos) d.assumed.push_back(line);
+  if (any_end_moves(rig)) d.warnings.push_back(rig.file + ": terminations: without forces on both ends these begin as rigid");
   const auto plucks = read_all(rig, from, d);
   if (!plucks) return rosin::failure{plucks.error()};
   const std::vector<std::string> declared = rig.model ? rig.model->physics : std::vector<std::string>{};

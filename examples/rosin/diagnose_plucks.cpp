@@ -15,9 +15,7 @@ rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin:
     out.takes.pop_back();
   }
   if (!out.options.stiffness) out.guess.inharmonicity = 0;
-  auto ends = ends_as_modes(rig, values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, out.warnings);
-  if (!ends) return rosin::failure{ends.error()};
-  out.guess.ends = *std::move(ends);
+  if (auto why = add_known_ends(rig, values, out.guess, out.warnings)) return *std::move(why);
   return out;
 }
 
@@ -37,7 +35,9 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
   auto found = rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
   if (!found) return rosin::failure{found.error()};
   plucks_told out{*std::move(found), {}};
-  if (!out.found.explained) out.odd = rosin::find_odd_pluck(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
+  rosin::pluck_guess told = plucks->guess;
+  told.ends = out.found.data.layout.ends(out.found.best.value);
+  if (!out.found.explained) out.odd = rosin::find_odd_pluck(plucks->takes, plucks->held, told, plucks->options, catalogue);
   return out;
 }
 

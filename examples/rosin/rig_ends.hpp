@@ -5,6 +5,7 @@
 #pragma once
 
 #include <rosin/acquire/rig.hpp>
+#include <rosin/acquire/rig_values.hpp>
 #include <rosin/calibrate/end_fit.hpp>
 #include <rosin/propagate/termination_modes.hpp>
 #include <rosin/propagate/termination_table.hpp>
@@ -37,9 +38,9 @@ struct fitted_ends {
 
 /// As declared; rigid where it is declared so, or to be fitted. What had to be done to a table is said in `remarks`.
 [[nodiscard]] rosin::outcome<moving_end> declared_end(const rosin::rig& rig, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks);
-/// Both as a diagnosis knows them: modes as they are, a table by modes that answer as it does (`remarks` tells how well), rigid where they are to
-/// be fitted.
-[[nodiscard]] rosin::outcome<std::array<rosin::modal_termination, 2>> ends_as_modes(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks);
+/// Both as a diagnosis knows them, into what it begins with: modes as they are, a table by modes that answer as it does (`remarks` tells how well),
+/// rigid where they are to be fitted.
+[[nodiscard]] std::optional<rosin::failure> add_known_ends(const rosin::rig& rig, const rosin::rig_values& values, rosin::pluck_guess& guess, std::vector<std::string>& remarks);
 /// Both as a simulation steps them: the same; "fit" fails.
 [[nodiscard]] rosin::outcome<std::array<rosin::modal_termination, 2>> simulated_ends(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks);
 [[nodiscard]] moving_end end_of_modes(const rosin::modal_termination& modes);

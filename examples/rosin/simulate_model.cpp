@@ -2,6 +2,7 @@
 #include "simulate_model.hpp"
 
 #include <rosin/adapt/audio_sndfile.hpp>
+#include <rosin/calibrate/pluck_layout.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -129,13 +130,10 @@ void put_string(const diagnosed_model& model, simulation_plan& plan) {
 
 /// Declared terminations, by as much as the plucks say that they are off (pluck_layout.hpp).
 void put_ends(const diagnosed_model& model, simulation_plan& plan) {
-  for (const std::size_t end : {0U, 1U})
-    for (std::size_t i = 0; auto& mode : plan.burden.string.ends[end].modes) {
-      const std::string of = std::string(" of ") + (end == 0 ? "near" : "far") + " end's mode " + std::to_string(++i);
-      mode.frequency_Hz *= std::exp(value_of(model, "ln_frequency" + of).value_or(0));
-      mode.q *= std::exp(value_of(model, "ln_q" + of).value_or(0));
-      mode.per_mass_per_s *= std::exp(value_of(model, "ln_per_mass" + of).value_or(0));
-    }
+  const rosin::pluck_layout layout({}, {}, plan.burden.string.ends);
+  Eigen::VectorXd off = Eigen::VectorXd::Zero(layout.size());
+  for (Eigen::Index p = layout.first_of_ends(); p < layout.size(); ++p) off[p] = value_of(model, layout.name(p)).value_or(0);
+  plan.burden.string.ends = layout.ends(off);
 }
 
 /// Position of every place that was plucked and fitted, in the order in which a calibration counts them.

@@ -126,6 +126,9 @@ read -r table_N table_m_s < <("$tool" compare of-table-truth/bow-1.csv made-trut
 holds "$table_N < 0.05"
 holds "$table_m_s < 0.05"
 
+expect 0 diagnose of-table --json table.json
+says "no-mismatch" "terminations.far: bridge.csv: by "
+
 # noise in a file is repaired, and told; what takes no energy at all is refused
 awk -F, 'NR % 40 == 3 { $2 = -$2 / 10 } { print $1 "," $2 "," $3 }' bridge.csv >noisy.csv
 sed 's/^far = { modes.*/far = "noisy.csv"/; s/^duration_s.*/duration_s = 0.01/' rig.toml >noisy.toml

@@ -45,11 +45,7 @@ namespace detail {
 /// Empty for a rigid end.
 [[nodiscard]] inline known_admittance admittance_of(const modal_termination& end) {
   if (end.modes.empty()) return {};
-  return [end](std::complex<double> s) {
-    std::complex<double> sum = 0;
-    for (const admittance_mode& m : end.modes) sum += m(s);
-    return sum;
-  };
+  return [end](std::complex<double> s) { return end.at(s); };
 }
 
 class end_fitter {
@@ -181,7 +177,7 @@ private:
       if (uncertain) out.covariance(at + 2, at + 2) += 1;
       out.ends[d_.model().mode_end[i]].modes.push_back(m);
     }
-    if (!out.plucks.value.allFinite() || worst(f) > how_.most_residual) return failure{takes_.front().name + ": the plucks do not ring as the declared string should, nor with ends that give way"};
+    if (!out.plucks.value.allFinite() || worst(f) > how_.most_residual) return failure{takes_.front().name + ": the plucks do not ring as the declared string should, nor " + (how_.free_ends[0] || how_.free_ends[1] ? "with ends that give way" : "between the declared ends")};
     return out;
   }
 

@@ -79,6 +79,7 @@ public:
 
   [[nodiscard]] Eigen::Index size() const { return first_of_ends() + 3 * static_cast<Eigen::Index>(ends_[0].modes.size() + ends_[1].modes.size()); }
   [[nodiscard]] Eigen::Index first_of_ends() const { return at(group_.size(), 0); }
+  [[nodiscard]] bool has_ends() const { return size() > first_of_ends(); }
   [[nodiscard]] std::size_t takes() const { return group_.size(); }
   /// Declared positions, one for each that is fitted.
   [[nodiscard]] const std::vector<double>& positions() const { return positions_; }
@@ -197,6 +198,9 @@ public:
   [[nodiscard]] bool ends_within_doubt(const Eigen::VectorXd& v, double times = 1) const {
     for (Eigen::Index p = first_of_ends(); p < size(); ++p)
       if (!(std::abs(v[p]) <= times * end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3])) return false;
+    for (const modal_termination& end : ends(v))
+      for (const admittance_mode& m : end.modes)
+        if (!(m.q > 0.5)) return false;  // it would not ring
     return true;
   }
 

@@ -6,7 +6,7 @@
 //
 //     torsion                  eps = -(h_T - h_declared) * f
 //     rod-resonance            eps = -Y * f,    Y = (s / m) / (s^2 + s w0 / q + w0^2): fixed in frequency whatever the string does
-//     creep                    eps = -sgn(f) v0 exp((|f| / N - mu) / a)
+//     creep                    eps = -sgn(f) v_N exp((|f| / N - 1) / a)
 //     speed-ripple             eps = v relative sin(2 pi frequency t + phase), whatever the force
 //
 // What is not linear is searched for on a grid, with a quick measure (how much of the weighted residual a column explains

@@ -109,7 +109,7 @@ public:
   /// Orthonormal basis of all that the nuisances can do.
   [[nodiscard]] Eigen::MatrixXd nuisances() const {
     std::vector<Eigen::VectorXd> columns;
-    for (Eigen::Index p = 0; p < layout_.size(); ++p) {
+    for (Eigen::Index p = 0; p < layout_.first_of_ends(); ++p) {  // declared ends are taken for true
       if (!layout_.is_free(p)) continue;
       Eigen::VectorXd up = value_, down = value_;
       const double step = layout_.step(p, value_);

@@ -186,7 +186,7 @@ private:
 /// nearly all of it.
 [[nodiscard]] inline std::optional<acting_place> place_of_residual(const scene_data& data, const scene_fit& fit, std::size_t take) {
   constexpr double most_periods = 24, least_periods = 2;
-  const auto problem = data.problem(fit.effects, fit.value, {1000, std::min(most_periods, fit.horizon_periods), true, freedom::all}, {1, 1});
+  const auto problem = data.problem(fit.effects, fit.value, {1000, std::min(most_periods, fit.horizon_periods), true, data.layout.has_ends() ? freedom::no_corrections : freedom::all}, {1, 1});  // an end that is free would take up what acts there
   const pluck_scene scene = problem.model().scene(fit.value, static_cast<int>(take));
   if (static_cast<double>(problem.part(take, 1).count()) < least_periods * problem.rate_Hz(take) / scene.string.fundamental_Hz) return std::nullopt;
   const std::array<double, 2> gain{pluck_layout::gain(fit.value, 0), pluck_layout::gain(fit.value, 1)};

@@ -86,7 +86,7 @@ inline void prefer_over_one_horizon(const scene_data& data, std::vector<scene_fi
   const double cost = cost_of(*brief, noise);
   for (const scene_fit& f : fits) {
     if (f.horizon_periods < 1e8) continue;
-    const scene_fit other = fit_scene(data, f.effects, f.value, {{1000, brief->horizon_periods, true}}, noise);
+    const scene_fit other = fit_scene(data, f.effects, f.value, {{1000, brief->horizon_periods, true, data.compared()}}, noise);
     if (cost_of(other, noise) < cost + 6) {
       fits.erase(brief);
       return;
@@ -195,7 +195,7 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
     std::vector<fit_stage> rest;
     rest.reserve(3);
     if (strong) rest.push_back({1000, 40, true}), rest.push_back({});
-    const bool corrects = data.layout.size() > data.layout.first_of_ends() || std::any_of(f.effects.begin(), f.effects.end(), [](const pluck_effect& e) {
+    const bool corrects = data.layout.has_ends() || std::any_of(f.effects.begin(), f.effects.end(), [](const pluck_effect& e) {
       return std::any_of(e.parameters.begin(), e.parameters.end(), [](const effect_parameter& p) { return p.late; });
     });
     if (corrects) rest.push_back({1000, 1e9, true, freedom::all});
@@ -263,7 +263,7 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
   std::size_t count = fit.effects.size();
   for (std::size_t tried = 0, k = 0; tried < count && count > 1; ++tried, k = (k + 1) % count) {
     scene_fit rest = detail::without(data, fit, k);
-    rest = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true}}, noise);
+    rest = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true, data.compared()}}, noise);
     if (!(detail::cost_of(rest, noise) < 1e299)) continue;
     if (detail::price_of(rest, noise) < detail::price_of(fit, noise)) {
       fit = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true, freedom::all}}, noise);

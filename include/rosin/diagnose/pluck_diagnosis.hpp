@@ -6,7 +6,7 @@
 //
 //     significance   the gain in ln L, divided by the misfit that is left (model error counts as noise), is at least 14;
 //     prediction     it gains 3 on takes that were set aside, where it does not gain very much in all;
-//     worth          a further effect takes away at least two thirds of what the model so far leaves beyond the noise, and that is
+//     worth          a further effect (any, where terminations are declared to move: these count as found) takes away at least two thirds of what the model so far leaves beyond the noise, and that is
 //                    at least a hundredth (in amplitude) of what there was to explain: no model of a bead is exact either.
 //
 // Explained is what leaves on such takes no more than a quarter of the noise beyond it, or 12 % of what there was
@@ -64,7 +64,7 @@ inline int free_parameters(const scene_fit& f) {
 /// The share of a mismatch's power that the best of `fits` leaves, as far as it looks.
 inline double share_left(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits, std::array<double, 2> noise) {
   if (fits.empty()) return 1;
-  const scene_fit plain = fit_scene(data, before.effects, before.value, {{1000, fits.front().horizon_periods, true}}, noise);
+  const scene_fit plain = fit_scene(data, before.effects, before.value, {{1000, fits.front().horizon_periods, true, data.compared()}}, noise);
   double expected = 0;
   for (const double n : fits.front().quality.samples) expected += n;
   return (cost_of(fits.front(), noise) - expected) / std::max(1e-9, cost_of(plain, noise) - expected);
@@ -77,7 +77,7 @@ public:
       : d_{d}, all_{all}, weigh_{d.declared.noise_N},
         now_{{}, d.declared.value, d.declared.sd, d.declared.covariance, {}, {}, d.declared.horizon_periods, 0, true} {
     now_.quality.residual_ratio = d.declared.residual_ratio;
-    if (d.data.layout.size() > d.data.layout.first_of_ends()) correct_ends();
+    if (d.data.layout.has_ends()) correct_ends();
   }
 
   void run(int most_effects) {
@@ -97,19 +97,21 @@ private:
   struct comparison {
     double temper = 1, gain = 0, left = 0, was = 0, samples = 0;
   };
-  /// Declared terminations, as far off as they may be: what takes them further is none of theirs. They count as an effect that was found: what
-  /// their motion does is what there was to explain.
+  /// Declared terminations, as far off as they may be: what takes them further is none of theirs.
   void correct_ends() {
-    scene_data rigid{d_.data.takes, d_.data.guess, d_.data.options, pluck_layout(d_.data.takes, d_.data.options)};
-    rigid.guess.ends = {};
-    moving_ = fit_scene(rigid, {}, now_.value.head(rigid.layout.size()), {{1000, 1e9, true}}, weigh_);
     scene_fit tried = fit_scene(d_.data, {}, now_.value, {{1000, 1e9, true, freedom::all}}, weigh_);
     if (d_.data.layout.ends_within_doubt(tried.value)) now_ = std::move(tried);
+  }
+  /// They count as an effect that was found: what their motion does, over so many periods, is what there was to explain.
+  [[nodiscard]] double done_by_ends(double periods, double samples) const {
+    scene_data rigid{d_.data.takes, d_.data.guess, d_.data.options, pluck_layout(d_.data.takes, d_.data.options)};
+    rigid.guess.ends = {};
+    return cost_of(fit_scene(rigid, {}, now_.value.head(rigid.layout.size()), {{1000, periods, true}}, weigh_), noise_) - samples;
   }
   /// Whether an effect takes away enough. Beside a strong one its own model's faults are worth something to others as well; but these leave most of
   /// them. What a declared end is off by is no other mode of it.
   [[nodiscard]] bool is_worth(const comparison& c, const pluck_effect& e, int round) const {
-    if (round == 0 && !moving_) return true;
+    if (round == 0 && !d_.data.layout.has_ends()) return true;
     const bool much = c.was > 1e-4 * all_there_was_, at_known_end = e.at_end && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
     return c.left < c.was / 3 && (much || (!at_known_end && c.left < c.was / 30));
   }
@@ -166,7 +168,7 @@ private:
     const scene_fit before = fit_scene(d_.data, now_.effects, now_.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh_);
     for (std::size_t c = 0; c < 2; ++c) noise_[c] = std::min({noise_[c], before.quality.noise[c], tried.quality.noise[c]});
     const comparison c = compare(before, tried);
-    if (round == 0) d_.base = before, all_there_was_ = moving_ ? cost_of(*moving_, noise_) - c.samples : c.was;
+    if (round == 0) d_.base = before, all_there_was_ = d_.data.layout.has_ends() ? done_by_ends(tried.horizon_periods, c.samples) : c.was;
     const bool worth = is_worth(c, tried.effects.back(), round);
     for (const scene_fit& f : fits)
       if (worth || &f == &tried) rank(f, c);
@@ -182,7 +184,6 @@ private:
   const std::vector<pluck_effect>& all_;
   std::array<double, 2> weigh_, noise_{1e300, 1e300};
   scene_fit now_;
-  std::optional<scene_fit> moving_;  ///< where declared ends move: the same string on rigid ones
   double all_there_was_ = 0;
 };
 
@@ -216,7 +217,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
   const bool doubtful = !noise_seen && d.floor > much_noise;
   const bool complete = !doubtful && ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
-  const bool known_ends = d.data.layout.size() > d.data.layout.first_of_ends();  // never known to the last digit
+  const bool known_ends = d.data.layout.has_ends();  // never known to the last digit
   d.mismatched = d.mismatched || (left > 1.5 && !(known_ends && was <= 0.25 * d.floor)) || modulated || doubtful || was > 0.6 * d.floor;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   if (d.explained || excess <= 0.5 * was) return;
@@ -224,10 +225,6 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   d.found_gain.clear(), d.alternatives.clear();
   d.after = d.before;
 }
-
-}  // namespace detail
-
-namespace detail {
 
 /// The declared model by itself: a string between ends that are rigid, or that move as is known.
 [[nodiscard]] inline outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {

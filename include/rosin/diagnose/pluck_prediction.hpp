@@ -171,7 +171,7 @@ inline seen_noise noise_before_release(const scene_data& data, const scene_fit& 
 /// By how much ln L of the takes in `held` is higher with the last effect of a fit than without it, misfit counted as noise.
 inline double held_out_gain(const scene_data& data, const scene_fit& fit, const std::vector<pluck_take>& held, double noise) {
   scene_fit less = without(data, fit, fit.effects.size() - 1);
-  less = fit_scene(data, less.effects, less.value, {{1000, fit.horizon_periods, true}}, {noise, noise});
+  less = fit_scene(data, less.effects, less.value, {{1000, fit.horizon_periods, true, data.compared()}}, {noise, noise});
   less.horizon_periods = fit.horizon_periods;
   double gain = 0;
   for (const pluck_take& take : held) {

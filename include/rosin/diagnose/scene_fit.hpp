@@ -37,6 +37,9 @@ struct scene_data {
   pluck_options options;
   pluck_layout layout;
 
+  /// What is free in a fit that a fit with everything free is compared with: ends were moved along with an effect that is then taken out.
+  [[nodiscard]] freedom compared() const { return layout.has_ends() ? freedom::all : freedom::no_corrections; }
+
   /// The recordings without what effects that are not linear have put in.
   [[nodiscard]] std::vector<pluck_take> undone(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value) const {
     std::vector<pluck_take> out = takes;

@@ -42,7 +42,7 @@ private:
       const double apart = ((e.key - key).array() / (e.key.array().abs() + 1e-9)).abs().maxCoeff();
       if (apart < nearest) nearest = apart, start = e.poles;
     }
-    if (kept_.size() > 80) kept_.erase(kept_.begin(), kept_.begin() + 40);
+    if (kept_.size() > std::max<std::size_t>(80, 4 * static_cast<std::size_t>(key.size()))) kept_.erase(kept_.begin(), kept_.begin() + 40);
     return kept_.emplace_back(entry{key, string_poles(scene, highest_Hz, most, start), {}});
   }
 
@@ -147,6 +147,7 @@ private:
     const Eigen::Index more = v.size() - first_of_ends();
     Eigen::VectorXd k(gain_near + more + 1);
     k << v.head(gain_near), v.tail(more), s.string.fundamental_Hz;
+    k.segment(gain_near, plain_size() - first_of_ends()).array() += 1;  // logarithms about 0: how near a string is tells by their size
     return k;
   }
 

@@ -54,8 +54,11 @@ struct modal_termination {
   std::vector<admittance_mode> modes;
 
   [[nodiscard]] std::complex<double> relative_admittance(double frequency_Hz) const noexcept {
+    return at({0, 2 * std::numbers::pi * frequency_Hz});
+  }
+  [[nodiscard]] std::complex<double> at(std::complex<double> s) const noexcept {
     std::complex<double> sum = 0;
-    for (const admittance_mode& m : modes) sum += m(std::complex<double>(0, 2 * std::numbers::pi * frequency_Hz));
+    for (const admittance_mode& m : modes) sum += m(s);
     return sum;
   }
   [[nodiscard]] double memory_s() const noexcept {

@@ -30,6 +30,7 @@ struct mode_limits {
   double tolerance = 1e-3;  ///< stop here
   double refuse = 0.1;      ///< fail above
   int modes = 90;
+  double least_q = 0.02;    ///< below 0.5 a mode does not ring: its poles are real
 };
 
 /// Modes, and the rms of what their reflection misses over the rms of what makes the wanted one differ from a rigid end's.
@@ -118,7 +119,8 @@ private:
       weight.push_back(std::norm(by)), pull.push_back(std::conj(by) * differ_.of_reflection[k]);
     }
     std::vector<std::pair<double, admittance_mode>> found;
-    for (const double q : {0.3, 2.0, 8.0, 25.0, 80.0}) {
+    for (const double sharp : {0.3, 2.0, 8.0, 25.0, 80.0}) {
+      const double q = std::max(sharp, limits_.least_q);
       for (std::size_t k = 0; k < s_.size(); k += 3) found.push_back(gain_of(s_[k].imag() / (2 * std::numbers::pi), q, weight, pull));
       for (const double f : {limits_.from_Hz / 4, limits_.from_Hz / 2, 1.5 * limits_.to_Hz, 2.5 * limits_.to_Hz}) found.push_back(gain_of(f, q, weight, pull));
     }
@@ -152,7 +154,7 @@ private:
   void move(admittance_mode& m, const Eigen::Vector3d& change) const {
     const auto by = [&](int i, double most) { return std::exp(std::clamp(change[i], -most, most)); };
     m.frequency_Hz = std::clamp(m.frequency_Hz * by(0, 0.2), limits_.from_Hz / 8, 3 * limits_.to_Hz);
-    m.q = std::clamp(m.q * by(1, 1), 0.02, 2000.0);
+    m.q = std::clamp(m.q * by(1, 1), limits_.least_q, 2000.0);
     m.per_mass_per_s *= by(2, 2);
   }
   [[nodiscard]] std::pair<Eigen::MatrixXd, Eigen::VectorXd> linearised() const {

@@ -83,3 +83,29 @@ TEST_CASE("what no string could be is not plausible") {
   CHECK_FALSE(changed(layout::inharmonicity, std::nan("")));
   CHECK(changed(layout::internal_loss, 1e-7));
 }
+
+TEST_CASE("terminations that are known to move stand at the end: how far each mode is off, about nothing, within limits") {
+  std::array<rosin::modal_termination, 2> ends;
+  ends[0].modes = {{900, 10, 20}}, ends[1].modes = {{2400, 12, 40}, {470, 30, 4}};
+  const layout l(three_takes(), {}, ends), plain(three_takes(), {});
+  CHECK(l.has_ends());
+  CHECK_FALSE(plain.has_ends());
+  REQUIRE(l.size() == plain.size() + 9);
+  CHECK(l.name(l.first_of_ends()) == "ln_frequency of near end's mode 1");
+  CHECK(l.name(l.first_of_ends() + 8) == "ln_per_mass of far end's mode 2");
+  const Eigen::Index q = l.first_of_ends() + 4;
+  CHECK(l.is_free(q));
+  CHECK_FALSE(l.is_scale(l.first_of_ends() + 1));
+  CHECK(l.concerns(q, 2));
+  CHECK(l.prior(q, three_takes(), {}).sd == doctest::Approx(0.1));
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(l.size());
+  v[q] = std::log(1.1);
+  CHECK(l.ends(v)[1].modes[0].q == doctest::Approx(13.2));
+  CHECK(l.ends(v)[1].modes[1].frequency_Hz == 470);
+  CHECK(l.ends_within_doubt(v));
+  v[q] = 0.3;
+  CHECK_FALSE(l.ends_within_doubt(v));
+  CHECK(l.ends_within_doubt(v, 2));
+  v[q] = -0.35, ends[1].modes[0].q = 0.6;  // would not ring
+  CHECK_FALSE(layout(three_takes(), {}, ends).ends_within_doubt(v, 2));
+}

@@ -45,3 +45,20 @@ TEST_CASE("parameters of effects stand behind those of the plucks, in their unit
   CHECK(scene.sensors[1].resonance_Hz == doctest::Approx(18e3));
   CHECK(scene.scatterers[0].mass_s == doctest::Approx(1e-5));
 }
+
+TEST_CASE("declared ends are in the scene, off by as much as the parameters say, and free once everything has settled") {
+  std::vector<rosin::pluck_take> takes(2);
+  for (auto& t : takes) t.position = 0.3;
+  std::array<rosin::modal_termination, 2> ends;
+  ends[1].modes = {{2400, 12, 40}};
+  const rosin::pluck_layout layout(takes, {}, ends);
+  Eigen::VectorXd v = test::values_of(layout);
+  const Eigen::Index first = layout.first_of_ends();
+  v[first + 2] = 0.02;
+  const rosin::scene_plucks model(layout, {0, 0}, {});
+  CHECK(model.scene(v, 0).ends[1].modes.at(0).per_mass_per_s == doctest::Approx(40 * std::exp(0.02)));
+  CHECK(model.scene(v, 0).ends[0].rigid());
+  CHECK(model.is_free(first));
+  CHECK_FALSE(rosin::scene_plucks(layout, {0, 0}, {}, rosin::freedom::no_corrections).is_free(first));
+  CHECK_FALSE(rosin::scene_plucks(layout, {0, 0}, {}, rosin::freedom::release_only).is_free(first + 1));  // where a strength would stand
+}
