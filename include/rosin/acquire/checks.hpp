@@ -8,6 +8,8 @@
 
 #include <rosin/acquire/pluck_checks.hpp>
 
+#include <algorithm>
+
 namespace rosin {
 
 namespace detail {
@@ -56,6 +58,14 @@ inline void check_tail_hum(take_check& out, const pluck_view& view, const take_s
                                                         view.signals->sample_rate_Hz, view.fundamental_Hz));
 }
 
+/// A string that rings as declared at one end is no other string, whatever rings loudest at the other: a heavy bead may leave an octave there.
+inline void doubt_one_end(take_check& out) {
+  const auto is_other_string = [](const finding& f) { return f.kind == "wrong-pitch" && f.level == severity::error; };
+  if (std::count_if(out.findings.begin(), out.findings.end(), is_other_string) != 1) return;
+  for (finding& f : out.findings)
+    if (is_other_string(f)) f.level = severity::warning;
+}
+
 /// With force transducers at both ends.
 inline void check_force_pluck(take_check& out, const pluck_view& view) {
   pluck_steps steps;
@@ -77,6 +87,7 @@ inline void check_force_pluck(take_check& out, const pluck_view& view) {
       for (auto& c : out.channels)
         if (c.channel == name) c.noise_rms = noise_in(s.values, lead_in);
   }
+  doubt_one_end(out);
 }
 
 /// With any other sensor.

@@ -86,6 +86,21 @@ TEST_CASE("a wrong sample rate shows in the pitch") {
   CHECK(kinds(check(p)) == "");
 }
 
+TEST_CASE("an octave at one end is a doubt, at both another string") {
+  constexpr std::size_t half = 73;  // of a period, in samples
+  test::pluck p;
+  p.fundamental_Hz = p.rate_Hz / (2 * half), p.inharmonicity = 0;
+  const auto r = test::two_force_rig(p);
+  auto x = test::pluck_forces(p);
+  const auto ringing = static_cast<std::size_t>(p.release_s * p.rate_Hz) + 4 * half;
+  for (const bool both : {false, true}) {
+    for (std::size_t i = ringing; i + half < x[0].size(); ++i) x[both ? 0 : 1][i] = 0.5 * (x[both ? 0 : 1][i] + x[both ? 0 : 1][i + half]);  // odd partials go
+    const auto c = rosin::check_take(r, r.takes[0], test::signals(r, p, x));
+    CHECK(c.found("wrong-pitch"));
+    CHECK(rosin::has_error(c.findings) == both);
+  }
+}
+
 TEST_CASE("a pluck that is damped or missing") {
   test::pluck p;
   p.quality = 8;
