@@ -33,6 +33,11 @@ panel residual_panel(const residual_picture& r, const residual_series& s, std::s
   return p;
 }
 
+/// Whether the stretch that is drawn holds the place where the residual is largest.
+bool is_drawn(const residual_picture& r, const rig_diagnosis& d) {
+  return d.time_s && d.take == r.take && (*d.time_s)[0] < r.before.begin_s + 4 / r.fundamental_Hz;
+}
+
 double half_height_of(const residual_picture& r) {
   double most = 2.5 * std::max(r.noise_N[0], r.noise_N[1]);
   const auto end = static_cast<std::size_t>(4 * r.rate_Hz / r.fundamental_Hz);
@@ -45,7 +50,7 @@ figure residual_figure(const residual_picture& r, const residual_series& s, cons
   figure f;
   for (std::size_t c = 0; c < 2; ++c) {
     panel p = residual_panel(r, s, c, half_height_of(r));
-    if (d.time_s && d.take == r.take && (d.channel.empty() || d.channel == (c == 0 ? "near" : "far"))) p.heavy = {{1e3 * (*d.time_s)[0], 1e3 * (*d.time_s)[1]}};
+    if (is_drawn(r, d) && (d.channel.empty() || d.channel == (c == 0 ? "near" : "far"))) p.heavy = {{1e3 * (*d.time_s)[0], 1e3 * (*d.time_s)[1]}};
     f.panels.push_back(p);
   }
   f.share_axis();
@@ -155,7 +160,8 @@ void add_figures(const rig_diagnosis& d, report_page& page) {
   const bool told = d.time_s && d.take == r.take, corrected = d.after && told && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) { return r.before.force_N != r.after.force_N; });
   figure before = residual_figure(r, r.before, d);
   before.caption = "What the declared model leaves of " + r.take + " " + r.stretch + ", both ends, up to " + number(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
-  if (told) before.caption += " " + r.bar + " " + number(d.residual_over_noise) + " times the noise.";
+  const std::string where = !told || is_drawn(r, d) ? r.bar : "It is largest later, at " + number(1e3 * (*d.time_s)[0], "%.1f") + " ms in channel " + d.channel + r.bar.substr(r.bar.find(';'));
+  if (told) before.caption += " " + where + " " + number(d.residual_over_noise) + " times the noise.";
   else before.caption += " It is within the noise: the plucks show no mismatch.";
   page.figures.push_back(before);
   if (corrected) {

@@ -10,6 +10,8 @@ namespace {
 
 using form = rosin::termination::form;
 
+constexpr double ringing_q = 0.55;  ///< the least Q of a table's modes, and of what a diagnosis knows: it seeks poles of what rings
+
 const std::optional<rosin::termination>& end_of(const rosin::rig& rig, std::size_t which) { return which == 0 ? rig.near : rig.far; }
 
 template <class End>
@@ -48,19 +50,18 @@ rosin::outcome<moving_end> end_of_table(const rosin::rig& rig, const rosin::term
   return wrapped(*end, [e = *end](std::complex<double> s) { return e.at(s); });
 }
 
-rosin::modal_termination declared_modes(const rosin::termination& t, double impedance_Ns_m, double least_q = 0) {
+rosin::modal_termination declared_modes(const rosin::termination& t, double impedance_Ns_m) {
   rosin::modal_termination out;
-  for (const auto& m : t.modes) out.modes.push_back({m.frequency_Hz, std::max(m.q, least_q), impedance_Ns_m / m.mass_kg});
+  for (const auto& m : t.modes) out.modes.push_back({m.frequency_Hz, m.q, impedance_Ns_m / m.mass_kg});
   return out;
 }
 
 /// A table by modes, as far as the string can feel it: from well below its pitch to where the completed table has faded. Noise in a
 /// measured table is nothing that modes should follow: only where half of it cannot be had is it no admittance of modes.
-rosin::outcome<rosin::modal_termination> modes_of_table(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks,
-                                                        double least_q) {
+rosin::outcome<rosin::modal_termination> modes_of_table(const rosin::rig& rig, const rosin::termination& t, std::size_t which, double impedance_Ns_m, std::vector<std::string>& remarks) {
   const auto end = completed(rig, t, which, impedance_Ns_m, remarks);
   if (!end) return rosin::failure{end.error()};
-  const auto like = rosin::as_modes(*end, {.from_Hz = rig.string.fundamental_Hz / 8, .to_Hz = std::min(2 * t.admittance.back().frequency_Hz, 30e3), .refuse = 0.5, .least_q = least_q});
+  const auto like = rosin::as_modes(*end, {.from_Hz = rig.string.fundamental_Hz / 8, .to_Hz = std::min(2 * t.admittance.back().frequency_Hz, 30e3), .refuse = 0.5, .least_q = ringing_q});
   if (!like) return rosin::failure{place_of(rig, which) + ": " + like.error()};
   remarks.push_back(std::string{"terminations."} + (which == 0 ? "near" : "far") + ": " + t.file + ": by " + std::to_string(like->end.modes.size()) +
                     " modes, whose reflection differs from the table's by " + rosin::detail::figure(100 * like->mismatch, "%.2g") + " % of what moves");
@@ -68,17 +69,17 @@ rosin::outcome<rosin::modal_termination> modes_of_table(const rosin::rig& rig, c
 }
 
 /// Rigid where they are to be fitted.
-rosin::outcome<std::array<rosin::modal_termination, 2>> ends_as_modes(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks, double least_q) {
+rosin::outcome<std::array<rosin::modal_termination, 2>> ends_as_modes(const rosin::rig& rig, double impedance_Ns_m, std::vector<std::string>& remarks) {
   std::array<rosin::modal_termination, 2> out;
   for (std::size_t which = 0; which < 2; ++which) {
     const auto& end = end_of(rig, which);
     if (!end || end->kind == form::rigid || end->kind == form::fit) continue;
     if (!(impedance_Ns_m > 0)) return rosin::failure{no_impedance(rig)};
     if (end->kind == form::modes) {
-      out[which] = declared_modes(*end, impedance_Ns_m, least_q);
+      out[which] = declared_modes(*end, impedance_Ns_m);
       continue;
     }
-    auto modes = modes_of_table(rig, *end, which, impedance_Ns_m, remarks, least_q);
+    auto modes = modes_of_table(rig, *end, which, impedance_Ns_m, remarks);
     if (!modes) return rosin::failure{modes.error()};
     out[which] = *std::move(modes);
   }
@@ -120,9 +121,10 @@ rosin::outcome<moving_end> declared_end(const rosin::rig& rig, std::size_t which
 }
 
 std::optional<rosin::failure> add_known_ends(const rosin::rig& rig, const rosin::rig_values& values, rosin::pluck_guess& guess, std::vector<std::string>& remarks) {
-  constexpr double least_q = 0.55;  // poles are sought of what rings
-  auto ends = ends_as_modes(rig, values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, remarks, least_q);
+  auto ends = ends_as_modes(rig, values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, remarks);
   if (!ends) return rosin::failure{ends.error()};
+  for (auto& end : *ends)
+    for (auto& m : end.modes) m.q = std::max(m.q, ringing_q);
   guess.ends = *std::move(ends);
   return std::nullopt;
 }
@@ -131,7 +133,7 @@ rosin::outcome<std::array<rosin::modal_termination, 2>> simulated_ends(const ros
   for (const std::size_t which : {0U, 1U})
     if (to_be_fitted(rig, which))
       return rosin::failure{place_of(rig, which) + ": \"fit\" cannot be simulated: it asks the plucks, and there are none yet; declare \"rigid\", modes or a file"};
-  return ends_as_modes(rig, impedance_Ns_m, remarks, rosin::mode_limits{}.least_q);
+  return ends_as_modes(rig, impedance_Ns_m, remarks);
 }
 
 }  // namespace tool

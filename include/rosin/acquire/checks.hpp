@@ -8,7 +8,7 @@
 
 #include <rosin/acquire/pluck_checks.hpp>
 
-#include <algorithm>
+#include <optional>
 
 namespace rosin {
 
@@ -23,8 +23,8 @@ namespace detail {
 }
 
 /// The pitch of the ringing against the declared one, and how long it lasts. A pitch that is off is an error where it looks like a wrong sampling
-/// rate or like another string; a bead can lower it by a tenth.
-inline void check_ringing(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
+/// rate or like another string; a bead can lower it by a tenth. True if it may be the declared string's.
+[[nodiscard]] inline bool check_ringing(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
   const double rate = view.signals->sample_rate_Hz;
   const std::span<const double> tail{s.values.data() + start, s.values.size() - start};
   const auto grade = view.from->has_both_forces() ? severity::error : severity::warning;
@@ -35,20 +35,23 @@ inline void check_ringing(take_check& out, const pluck_view& view, const take_si
   if (quality && *quality < 25)
     out.add(grade, "does-not-ring", s.sensor.name, t, out.duration_s,
             "the ringing dies within a few periods (Q about " + figure(*quality, "%.0f") + ")", "free the string of what touches it");
-  if (!found) return;
+  if (!found) return false;
   const double off = found->pitch_Hz / view.fundamental_Hz - 1, limit = 0.015 + 2 * view.from->string.fundamental_tolerance.value_or(0.003);
+  bool other_string = false;
   if (found->score < 0.3)
     out.add(severity::warning, "not-periodic", s.sensor.name, t, out.duration_s, "the ringing is no harmonic series near the declared pitch",
             "check fundamental_Hz and what else sounds");
   else if (std::abs(off) > limit) {
     const double as_if_Hz = rate / (1 + off);
     const bool rate_is_wrong = is_usual_rate(as_if_Hz);
-    out.add(std::abs(off) > 0.2 || (std::abs(off) > 0.03 && rate_is_wrong) ? grade : severity::warning, "wrong-pitch", s.sensor.name, t, out.duration_s,
+    other_string = std::abs(off) > 0.2 || (std::abs(off) > 0.03 && rate_is_wrong);
+    out.add(other_string ? grade : severity::warning, "wrong-pitch", s.sensor.name, t, out.duration_s,
             "rings at " + figure(found->pitch_Hz, "%.2f") + " Hz, fundamental_Hz is " + figure(view.fundamental_Hz, "%.2f") +
                 (rate_is_wrong ? ": as if recorded at " + figure(as_if_Hz, "%.0f") + " samples a second" : std::string{}),
             rate_is_wrong ? "check the sample rate in the file's header and fundamental_Hz" : "check fundamental_Hz, and whether something sits on the string");
   }
   out.pitch_Hz = found->pitch_Hz;
+  return found->score >= 0.3 && !other_string;
 }
 
 inline void check_tail_hum(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
@@ -58,12 +61,11 @@ inline void check_tail_hum(take_check& out, const pluck_view& view, const take_s
                                                         view.signals->sample_rate_Hz, view.fundamental_Hz));
 }
 
-/// A string that rings as declared at one end is no other string, whatever rings loudest at the other: a heavy bead may leave an octave there.
-inline void doubt_one_end(take_check& out) {
-  const auto is_other_string = [](const finding& f) { return f.kind == "wrong-pitch" && f.level == severity::error; };
-  if (std::count_if(out.findings.begin(), out.findings.end(), is_other_string) != 1) return;
+/// A string that rings as declared at one end, at this pitch, is no other string, whatever rings loudest at the other: a heavy bead may leave an octave there.
+inline void doubt_other_pitch(take_check& out, double pitch_Hz) {
+  out.pitch_Hz = pitch_Hz;
   for (finding& f : out.findings)
-    if (is_other_string(f)) f.level = severity::warning;
+    if (f.kind == "wrong-pitch") f.level = severity::warning;
 }
 
 /// With force transducers at both ends.
@@ -75,19 +77,20 @@ inline void check_force_pluck(take_check& out, const pluck_view& view) {
   check_step(out, view, "far", steps.far);
   const bool levels = check_coupling(out, view, steps);
   if (!out.found("inverted-channel")) check_order(out, view, steps, levels);
+  std::optional<double> as_declared_Hz;
   for (const auto& [name, step] : {std::pair{"near", &steps.near}, std::pair{"far", &steps.far}}) {
     const auto& s = *view.signals->find(name);
     const auto start = step->frame + static_cast<std::size_t>(view.signals->sample_rate_Hz / view.fundamental_Hz);
     if (levels) check_tail(out, view, s, *step);
     if (start + 16 >= s.values.size()) continue;
-    check_ringing(out, view, s, start);
+    if (check_ringing(out, view, s, start)) as_declared_Hz = out.pitch_Hz;
     check_tail_hum(out, view, s, start);
     const std::size_t lead_in = step->frame - std::min(step->frame, start - step->frame);
     if (lead_in > 32)
       for (auto& c : out.channels)
         if (c.channel == name) c.noise_rms = noise_in(s.values, lead_in);
   }
-  doubt_one_end(out);
+  if (as_declared_Hz) doubt_other_pitch(out, *as_declared_Hz);
 }
 
 /// With any other sensor.
@@ -99,7 +102,7 @@ inline void check_other_pluck(take_check& out, const pluck_view& view) {
     out.release_s = view.signals->time_s(*onset);
     const auto start = *onset + static_cast<std::size_t>(4 * view.signals->sample_rate_Hz / view.fundamental_Hz);
     if (start + 16 >= s.values.size()) continue;
-    check_ringing(out, view, s, start);
+    (void)check_ringing(out, view, s, start);
     check_tail_hum(out, view, s, start);
   }
 }

@@ -42,6 +42,8 @@ struct pluck_guess {
   std::array<double, 2> gain_tolerance{0.05, 0.05};   ///< relative limits
   std::array<double, 2> ac_coupled_Hz{0, 0};          ///< 0: DC coupled
   std::array<modal_termination, 2> ends{};            ///< terminations that are known to move; fit_plucks() takes them for rigid, fit_ends() and a diagnosis do not
+
+  [[nodiscard]] bool has_ends() const { return !ends[0].modes.empty() || !ends[1].modes.empty(); }
 };
 
 /// Which nuisances are free, and which band is used.

@@ -45,7 +45,7 @@ inline void divide_by_sensor(std::vector<double>& x, const sensor_response& sens
 
 /// Whether nothing sits on the string and its ends are rigid. A second polarisation does not count: the bow moves one of them only.
 [[nodiscard]] inline bool string_is_plain(const pluck_guess& known, const std::vector<pluck_effect>& effects) {
-  return known.ends[0].modes.empty() && known.ends[1].modes.empty() && std::none_of(effects.begin(), effects.end(), [](const pluck_effect& e) {
+  return !known.has_ends() && std::none_of(effects.begin(), effects.end(), [](const pluck_effect& e) {
     return e.at_end || e.name == "point-mass" || e.name == "point-damper";
   });
 }

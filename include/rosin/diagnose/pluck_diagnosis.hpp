@@ -229,7 +229,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
 /// The declared model by itself: a string between ends that are rigid, or that move as is known.
 [[nodiscard]] inline outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {
   constexpr double most_residual = 0.95;  // a heavy bead leaves little of the declared string
-  if (guess.ends[0].modes.empty() && guess.ends[1].modes.empty()) return fit_plucks(takes, guess, options, most_residual);
+  if (!guess.has_ends()) return fit_plucks(takes, guess, options, most_residual);
   auto fit = fit_ends(takes, guess, options, {.free_ends = {false, false}, .most_residual = most_residual});
   if (!fit) return failure{fit.error()};
   return std::move(fit->plucks);
