@@ -2,9 +2,11 @@
 #include "recorder.hpp"
 
 #include <poll.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <ctime>
 #include <fstream>
 #include <future>
 #include <iostream>
@@ -22,6 +24,22 @@ std::string figure(double x, const char* form) {
   std::snprintf(text.data(), text.size(), form, x);
   return text.data();
 }
+
+/// Wall clock and this thread's share of a processor, for how long something took.
+class stop_watch {
+public:
+  [[nodiscard]] double wall_s() const noexcept { return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count(); }
+  [[nodiscard]] double processor_s() const noexcept { return processor_now_s() - processor_s_; }
+
+private:
+  [[nodiscard]] static double processor_now_s() noexcept {
+    timespec now{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+  double processor_s_ = processor_now_s();
+};
 
 /// One line on the terminal, ten times a second; nothing in a pipe, nothing where the terminal stands still.
 class meters_line {
@@ -65,7 +83,7 @@ public:
 
   /// False: the take is over.
   [[nodiscard]] bool take_in(const rosin::frame_read& got, std::span<const double> frames) {
-    const auto begin = std::chrono::steady_clock::now();
+    const stop_watch watch;
     if (!got.problem.empty()) problem(got.problem);
     meter_.push(frames);
     const bool before = trigger_.fired();
@@ -76,7 +94,7 @@ public:
       if (before && got.lost > 0 && report_.frames > 0 && !missing(got.lost)) return false;
       if (!keep(part)) return false;
     }
-    note_time(begin, got.frames);
+    note_time(watch, got.frames);
     if (got.ended) report_.over = true;
     if (got.ended && report_.frames == 0 && !trigger_.fired()) problem("the source ended before the trigger was reached");
     return !got.ended && report_.frames < most_ && !asked_to_end();
@@ -132,11 +150,12 @@ private:
     if (count == 0) return false;
     const bool first = report_.frames == 0;
     if (files_ != nullptr) {
-      const auto begin = std::chrono::steady_clock::now();
+      const stop_watch watch;
       if (first && !open()) return false;
       const auto bad = file_->write(to_file.first(count * width));
-      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-      writing_s_ += took.count(), report_.worst_write_s = std::max(report_.worst_write_s, took.count());
+      const double took = watch.wall_s();
+      writing_s_ += took, writing_processor_s_ += watch.processor_s();
+      report_.worst_write_s = std::max(report_.worst_write_s, took);
       if (bad) return failed(*bad);
     }
     report_.frames += count;
@@ -157,10 +176,11 @@ private:
     report_.over = true;
     return false;
   }
-  void note_time(std::chrono::steady_clock::time_point begin, std::size_t frames) {
-    const std::chrono::duration<double> all = std::chrono::steady_clock::now() - begin;
-    busy_s_ += all.count();
-    const double took = all.count() - std::exchange(writing_s_, 0.0);
+  void note_time(const stop_watch& watch, std::size_t frames) {
+    const double all = watch.wall_s(), worked = watch.processor_s() - std::exchange(writing_processor_s_, 0.0);
+    busy_s_ += all;
+    report_.worst_block_processor_s = std::max(report_.worst_block_processor_s, worked);
+    const double took = all - std::exchange(writing_s_, 0.0);
     if (took <= report_.worst_block_s) return;
     report_.worst_block_s = took;
     report_.worst_block_of_s = static_cast<double>(frames) / report_.format.sample_rate_Hz;
@@ -182,7 +202,7 @@ private:
   std::optional<rosin::take_file<>> file_;
   std::future<std::optional<rosin::failure>> named_;
   meters_line line_;
-  double busy_s_ = 0, writing_s_ = 0;  ///< the latter of the block at hand
+  double busy_s_ = 0, writing_s_ = 0, writing_processor_s_ = 0;  ///< the latter two of the block at hand
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -199,6 +219,7 @@ take_report recorder::record(const take_plan& take, rig_file_writer* files, cons
   session one{take, format, how_, files, hooks};
   const auto width = static_cast<std::size_t>(format.channels);
   std::vector<double> block(width * static_cast<std::size_t>(std::max(64.0, format.sample_rate_Hz / 50)));
+  ::mlockall(MCL_CURRENT);  // no page of this program has to be fetched again; where that is not allowed, all works as before
   for (;;) {
     const rosin::frame_read got = from_.read(block, std::chrono::milliseconds{20});
     if (!one.take_in(got, std::span{block}.first(got.frames * width))) break;
@@ -220,7 +241,7 @@ json to_json(const take_report& r) {
   return {{"take", r.take.name}, {"file", r.take.file()}, {"frames", r.frames}, {"duration_s", r.duration_s()},
           {"sampling_rate_Hz", r.format.sample_rate_Hz}, {"channels", r.format.channels}, {"bits", r.format.bits}, {"float", r.format.float_format},
           {"lost_frames", r.lost()}, {"gaps", gaps}, {"clipped", r.clipped}, {"problems", r.problems},
-          {"worst_block_s", r.worst_block_s}, {"worst_block_lasts_s", r.worst_block_of_s}, {"worst_write_s", r.worst_write_s}, {"busy", r.busy}};
+          {"worst_block_s", r.worst_block_s}, {"worst_block_lasts_s", r.worst_block_of_s}, {"worst_block_processor_s", r.worst_block_processor_s}, {"worst_write_s", r.worst_write_s}, {"busy", r.busy}};
 }
 
 std::string summary_of(const take_report& r) {

@@ -3,7 +3,7 @@
 set -euo pipefail
 page=$ROSIN_SOURCE/docs/howto/firmware.md
 PATH=$(dirname "$1"):$PATH
-rm -rf ./* && mkdir tried && cd tried
+rm -rf tried && mkdir tried && cd tried
 for entry in examples include tests; do ln -s "$ROSIN_SOURCE/$entry" .; done
 fail() { echo "FAILED: $*"; exit 1; }
 

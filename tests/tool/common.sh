@@ -1,9 +1,13 @@
-# Sourced by the tests of the tool: how to call it, what to expect of it, and a rig to try it on.
+# Sourced by the tests of the tool: how to call it, what to expect of it, and a rig to try it on. All they make is in a folder of their
+# own under the current one, which is made anew; nothing else is touched.
 set -euo pipefail
 tool=$1
 export LC_ALL=C
-here=$PWD
-rm -rf "${here:?}"/*
+tool=$(realpath "$(command -v "$tool")")
+here=$PWD/$(basename "$0" .sh).work
+rm -rf "${here:?}"
+mkdir "$here"
+cd "$here"
 failures=0
 
 # expect CODE COMMAND…: runs the tool; its output is then in $out, its messages in $err.

@@ -19,8 +19,8 @@ perl -e '
   open(my $j, "<", "soak.json"); my $json = <$j>;
   sub value { $json =~ /"$_[0]": ([-0-9.e]+)/ or die "no $_[0]\n"; $1 }
   my ($early, $late) = (value("resident_bytes_early"), value("resident_bytes_late"));
-  printf "%.1f s at %d Hz, %d frames lost; memory %.1f MB after 1 s, %.1f MB at the end; longest block %.2f ms of %.1f ms, its writing %.2f ms at most; busy %.1f %%; buffer at most %.1f %% full\n",
-    value("duration_s"), value("sampling_rate_Hz"), value("lost_frames"), $early / 1e6, $late / 1e6, 1e3 * value("worst_block_s"), 1e3 * value("worst_block_lasts_s"), 1e3 * value("worst_write_s"),
+  printf "%.1f s at %d Hz, %d frames lost; memory %.1f MB after 1 s, %.1f MB at the end; longest block %.2f ms of %.1f ms, of which the processor worked %.2f ms at most, its writing %.2f ms at most; busy %.1f %%; buffer at most %.1f %% full\n",
+    value("duration_s"), value("sampling_rate_Hz"), value("lost_frames"), $early / 1e6, $late / 1e6, 1e3 * value("worst_block_s"), 1e3 * value("worst_block_lasts_s"), 1e3 * value("worst_block_processor_s"), 1e3 * value("worst_write_s"),
     100 * value("busy"), 100 * value("fullest_buffer");
   die "frames were lost\n" if value("lost_frames") != 0;
   die "the take is too short\n" if abs(value("duration_s") - $seconds) > 1e-3;
