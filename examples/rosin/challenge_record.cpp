@@ -42,19 +42,16 @@ public:
   [[nodiscard]] played pluck(std::size_t i) const {
     const auto& base = rig_.base.plucks[i];
     const rosin::burdened_pluck wire{base.position, base.force_N, base.release_s + lead_s_, rig_.release_duration_s, rig_.pluck_width_m};
-    const auto run = [&](const rosin::modal_rig& string, double share) {
-      auto one = wire;
-      one.force_N *= share;
-      return rosin::step_pluck(string, rig_.burden, one, 0.14 + 2 * lead_s_, limit_Hz, step_);
-    };
-    auto steps = run(rig_.base.rig, std::cos(rig_.pluck_angle_rad));
-    if (rig_.detuning != 0) {
-      auto across = rig_.base.rig;
-      across.string.fundamental_Hz *= 1 + rig_.detuning;
-      across.string.tension_N *= std::pow(1 + rig_.detuning, 2);  // the same string with other supports: only its pitch differs
-      mix(steps, run(across, std::sin(rig_.pluck_angle_rad)));
-    }
-    return finish("pluck-" + std::to_string(i + 1), std::move(steps));
+    const double lasts_s = 0.14 + 2 * lead_s_;
+    if (rig_.detuning == 0) return finish(named(i), rosin::step_pluck(rig_.base.rig, rig_.burden, wire, lasts_s, limit_Hz, step_));
+    auto across = rig_.base.rig;
+    across.string.fundamental_Hz *= 1 + rig_.detuning;
+    across.string.tension_N *= std::pow(1 + rig_.detuning, 2);  // the same string with other supports: only its pitch differs
+    auto one = wire, other = wire;
+    one.force_N *= std::cos(rig_.pluck_angle_rad), other.force_N *= std::sin(rig_.pluck_angle_rad);
+    auto planes = rosin::step_planes(rig_.base.rig, one, across, other, rig_.burden, lasts_s, limit_Hz, step_);
+    mix(planes[0], planes[1]);
+    return finish(named(i), std::move(planes[0]));
   }
 
   [[nodiscard]] played stroke(std::size_t i) const {
@@ -72,6 +69,7 @@ public:
   }
 
 private:
+  [[nodiscard]] static std::string named(std::size_t i) { return "pluck-" + std::to_string(i + 1); }
   [[nodiscard]] rosin::elasto_plastic<rosin::two_exponential_curve<double>> bristles(std::size_t i) const {
     const double normal = rig_.base.strokes[i].normal_force_N, stiffness = rig_.bristles_N_m;
     return rosin::elasto_plastic<rosin::two_exponential_curve<double>>{

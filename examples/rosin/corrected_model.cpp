@@ -12,11 +12,14 @@ namespace {
 /// The effects of the catalogue that a diagnosis names, in the order in which its calibration holds them.
 std::vector<rosin::pluck_effect> effects_of(const json& diagnosis, const std::vector<rosin::pluck_effect>& catalogue, corrected_model& out) {
   std::vector<rosin::pluck_effect> found;
+  const json& calibration = diagnosis.at("calibration");
   for (const json& m : diagnosis.at("missing")) {
     const std::string name = m.at("effect");
     const auto& where = m.at("where");
     const std::string place = where.value("end", where.value("channel", std::string{}));
-    const auto e = std::find_if(catalogue.begin(), catalogue.end(), [&](const auto& c) { return c.id() == (place.empty() ? name : name + "@" + place); });
+    const auto is_it = [&](const rosin::pluck_effect& c) { return c.name == name && place == (c.place < 0 ? "" : c.place == 0 ? "near" : "far"); };
+    auto e = std::find_if(catalogue.begin(), catalogue.end(), [&](const auto& c) { return is_it(c) && calibration.contains(c.id() + " " + c.parameters.front().name); });
+    if (e == catalogue.end()) e = std::find_if(catalogue.begin(), catalogue.end(), is_it);
     if (e != catalogue.end()) found.push_back(*e), out.effects.push_back(name);
     else if (name == "tension-drift") out.tension_drift = m.at("parameters").at("relative").at("value"), out.effects.push_back(name);
     else if (name == "finite-contact-width" && m.at("parameters").contains("width_m")) out.contact_width_m = m["parameters"]["width_m"].at("value"), out.effects.push_back(name);
@@ -107,8 +110,8 @@ rosin::outcome<processed> process_with_model(const corrected_model& model, const
   if (strokes.empty()) return rosin::failure{model.file + ": " + (said.empty() ? take + " could not be reconstructed" : said.back())};
   warnings.insert(warnings.end(), said.begin(), said.end());
   diagnosed_stroke& s = strokes.front();
-  if (model.contact_width_m > 0 && is_plain(*model.plucks))
-    if (const auto edge_Hz = see_as_wide(rig, model.contact_width_m, s))
+  if (model.contact_width_m > 0)
+    if (const auto edge_Hz = see_as_wide(rig, *model.plucks, model.contact_width_m, s))
       warnings.push_back(take + ": force of both places of a contact of " + rosin::detail::figure(1e3 * model.contact_width_m, "%.3g") + " mm and their mean velocity, up to " +
                          rosin::detail::figure(1e-3 * *edge_Hz, "%.3g") + " kHz, where they can be told apart; the two versions part as a point's do");
   processed out;

@@ -205,10 +205,10 @@ void take_up_drift(const asked_contact& ask, double tension_drift, rosin::contac
 
 }  // namespace
 
-bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, double tension_drift, const std::vector<std::string>& without, rig_diagnosis& d) {
+bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks, double tension_drift, const std::vector<std::string>& without, rig_diagnosis& d) {
   rosin::contact_model model = declared_contact(rig);
   model.included.insert(model.included.end(), without.begin(), without.end());
-  const asked_contact ask = [&](const rosin::contact_model& m) { return contact_of(rig, strokes, plain_string, m); };
+  const asked_contact ask = [&](const rosin::contact_model& m) { return contact_of(rig, strokes, plucks, m); };
   rosin::contact_findings found = ask(model);
   take_up_drift(ask, tension_drift, model, found);
   const rosin::contact_model declared = model;

@@ -27,7 +27,7 @@ rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, doubl
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;
   const rosin::band limits = plan.options.limits_for(rate_Hz);
   const rosin::string_facts facts{plan.guess.fundamental_Hz, rate_Hz, limits.stop_Hz, impedance, length, plan.takes.size()};
-  const auto found = rosin::isolability_of(plan, rosin::catalogue_without(physics, facts, limits));
+  const auto found = rosin::isolability_of(plan, rosin::still_to_add(rosin::catalogue_without(physics, facts, limits), {}));
   json out{{"rig", rig.title.value_or(rig.file)}, {"sampling_rate_Hz", rate_Hz}, {"noise_N", noise_N}, {"seconds", plan.duration_s}, {"assumed", values.assumed}, {"warnings", remarks}};
   out["effects"] = json::array(), out["cosine"] = json::array(), out["classes"] = json::array();
   for (std::size_t i = 0; i < found.ids.size(); ++i) {

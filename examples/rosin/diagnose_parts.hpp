@@ -63,7 +63,7 @@ void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_dia
 [[nodiscard]] double parting_by_noise(const diagnosed_stroke& s);
 /// Force and motion of a stroke under a contact of some width, in place of a point's: those of both its places, up to the frequency that
 /// is returned; the versions part as a point's do. Nothing is changed where the string's length is unknown.
-[[nodiscard]] std::optional<double> see_as_wide(const rosin::rig& rig, double width_m, diagnosed_stroke& s);
+[[nodiscard]] std::optional<double> see_as_wide(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, double width_m, diagnosed_stroke& s);
 [[nodiscard]] rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks);
 /// The mean force that AC-coupled sensors lost, as far as friction is usually known, put into what the strokes are examined with.
 void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, std::vector<diagnosed_stroke>& strokes);
@@ -71,11 +71,11 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
 [[nodiscard]] bool is_plain(const rosin::pluck_diagnosis& plucks);
 /// The contact as the rig file declares it.
 [[nodiscard]] rosin::contact_model declared_contact(const rosin::rig& rig);
-[[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const rosin::contact_model& model);
+[[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model);
 
 /// One effect of the contact after the other, under strokes whose tension is the plucks' times 1 + tension_drift; true if the contact is as the model then has it. Where one was found in what sticks, that has
 /// to move by at most half of what it did, or by no more than the reconstruction leaves unsure; else none is named.
-bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, double tension_drift, const std::vector<std::string>& without,
+bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks, double tension_drift, const std::vector<std::string>& without,
                      rig_diagnosis& d);
 
 }  // namespace tool

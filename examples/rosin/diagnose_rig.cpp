@@ -188,7 +188,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     }
     step();
     add_lost_levels(rig, p, strokes);
-    contact_open = !examine_contact(rig, strokes, plain_string, rise, without, d);
+    contact_open = !examine_contact(rig, strokes, p, rise, without, d);
   }
   rank(d);
   d.verdict = !p.explained || contact_open || !accounted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";

@@ -142,9 +142,10 @@ rosin::contact_model declared_contact(const rosin::rig& rig) {
   return model;
 }
 
-rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_stroke& s, bool plain_string) {
+rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_stroke& s, const rosin::pluck_diagnosis& plucks) {
   rosin::contact_take t{s.name, s.mean_N, s.mean_m_s, s.motion.velocity_near_m_s, s.motion.velocity_far_m_s};
-  if (plain_string) t.near_N = s.force_N[0], t.far_N = s.force_N[1];  // a contact's width can be told on a plain string only
+  t.near_N = s.force_N[0], t.far_N = s.force_N[1];
+  t.sides = rosin::sides_of(rosin::scene_of(plucks.data, plucks.best), s.calibration.at.delay_s);
   t.rate_Hz = s.rate_Hz, t.rod_speed_m_s = s.speed_m_s, t.normal_force_N = s.normal_force_N;
   t.delay_s = s.calibration.at.delay_s, t.stiffness_s2 = s.calibration.at.stiffness_s2;
   t.inverse_q = s.calibration.at.loss.inverse_q(0.5 / (t.delay_s[0] + t.delay_s[1]));
@@ -154,14 +155,14 @@ rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_strok
   return t;
 }
 
-rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, bool plain_string, const rosin::contact_model& model) {
+rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model) {
   std::vector<rosin::contact_take> takes;
-  for (const auto& s : strokes) takes.push_back(contact_take_of(rig, s, plain_string));
+  for (const auto& s : strokes) takes.push_back(contact_take_of(rig, s, plucks));
   return rosin::contact_hypotheses(takes, model);
 }
 
-std::optional<double> see_as_wide(const rosin::rig& rig, double width_m, diagnosed_stroke& s) {
-  rosin::contact_take take = contact_take_of(rig, s, true);
+std::optional<double> see_as_wide(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, double width_m, diagnosed_stroke& s) {
+  rosin::contact_take take = contact_take_of(rig, s, plucks);
   rosin::contact_model model = declared_contact(rig);
   if (take.length_m > 0) model.width_s = width_m / take.length_m * (take.delay_s[0] + take.delay_s[1]);
   const auto one = rosin::as_one_contact({take}, model);

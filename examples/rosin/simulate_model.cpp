@@ -235,6 +235,8 @@ std::optional<rosin::failure> apply_model(const diagnosed_model& model, const ro
     if (!p.missing.empty()) return rosin::failure{model.file + ": \"" + e.name + "\" cannot be simulated: it has no " + p.missing};
     plan.effects.push_back(e.name);
   }
+  for (const std::size_t c : {0U, 1U})  // a sensor that rings bends behind that, unless the diagnosis says otherwise
+    plan.burden.sensors.rings_first[c] = !value_of(model, std::string{"sensor-nonlinearity@"} + (c == 0 ? "near" : "far") + " before it rings quadratic_per_N");
   if (plan.rig.torsion.present()) std::erase(plan.notes, "no [torsion]: the string does not turn");
   if (model.verdict == "unexplained") plan.notes.push_back(model.file + ": its verdict is \"unexplained\": something is still missing");
   return std::nullopt;

@@ -205,9 +205,12 @@
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/diagnose/scene_lines.hpp>
 #include <rosin/diagnose/scene_plucks.hpp>
+#include <rosin/diagnose/sensor_chain.hpp>
 #include <rosin/diagnose/stick_design.hpp>
+#include <rosin/diagnose/stretching_pluck.hpp>
 #include <rosin/diagnose/string_poles.hpp>
 #include <rosin/diagnose/string_response.hpp>
+#include <rosin/diagnose/string_side.hpp>
 #include <rosin/diagnose/strong_starts.hpp>
 #include <rosin/diagnose/sympathetic_effect.hpp>
 #include <rosin/diagnose/tension_drift.hpp>

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <rosin/diagnose/bristle_yield.hpp>
+#include <rosin/diagnose/string_side.hpp>
 #include <rosin/torsion/torsion_fit.hpp>
 
 namespace rosin {
@@ -29,6 +30,7 @@ struct contact_take {
   double rate_Hz = 0;
   double rod_speed_m_s = 0, normal_force_N = 0;                         ///< declared; steady
   std::array<double, 2> delay_s{};                                      ///< transverse travel times to the ends
+  std::array<string_side, 2> sides{};                                   ///< what the string carries and ends on, for the same
   double stiffness_s2 = 0, inverse_q = 0;                               ///< of the transverse waves, for a contact of some width
   double impedance_Ns_m = 0, length_m = 0;                              ///< length 0: unknown
   double force_sd_N = 0, velocity_sd_m_s = 0;                           ///< random, of one sample

@@ -7,9 +7,8 @@
 //
 #pragma once
 
-#include <rosin/condition/ac_coupling.hpp>
-#include <rosin/condition/held_record.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
+#include <rosin/diagnose/sensor_chain.hpp>
 
 namespace rosin {
 
@@ -31,14 +30,6 @@ inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmon
   Eigen::VectorXd amplitude = (basis.transpose() * weighed).ldlt().solve(weighed.transpose() * data);
   amplitude[2 * harmonics] = 0;
   data -= basis * amplitude;
-}
-
-/// Divides a channel by its sensor's response below `edge_Hz`, the record held at its ends in the padding.
-inline void divide_by_sensor(std::vector<double>& x, const sensor_response& sensor, double rate_Hz, double edge_Hz) {
-  held_record record(x.size(), 4096);
-  auto bins = record.spectrum(x);
-  for (std::size_t k = 1; k < bins.size(); ++k) bins[k] /= sensor({0, 2 * std::numbers::pi * std::min(edge_Hz, record.frequency_Hz(k, rate_Hz))});
-  x = record.record(std::move(bins));
 }
 
 }  // namespace detail

@@ -18,7 +18,7 @@
 #pragma once
 
 #include <rosin/condition/held_record.hpp>
-#include <rosin/diagnose/pluck_scene.hpp>
+#include <rosin/diagnose/string_side.hpp>
 #include <rosin/reconstruct/end_motion.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>
 
@@ -34,44 +34,30 @@ struct load_echo {
 };
 
 /// `loads`: on this side, outwards from the end, positions as travel times from it.
-[[nodiscard]] inline load_echo echo_of_loads(const std::vector<std::pair<double, scatterer>>& loads, double to_bow_s, const bow_point& at, double f_Hz, std::complex<double> force,
+[[nodiscard]] inline load_echo echo_of_loads(const std::vector<load_on_side>& loads, double to_bow_s, const bow_point& at, double f_Hz, std::complex<double> force,
                                              std::complex<double> moved) {
-  using complex = std::complex<double>;
-  const double w = 2 * std::numbers::pi * f_Hz, G = force_factor(w, at.stiffness_s2), wave = wave_impedance_ratio(w, at.stiffness_s2);
-  const complex gamma = propagation_rate(f_Hz, at.stiffness_s2, at.loss);
-  const complex dent(0, -near_field_ratio(w, at.stiffness_s2) / (2 * wave * G));  // the near field under a load, Z v / g
+  const side_waves waves = waves_at(f_Hz, at.stiffness_s2, propagation_rate(f_Hz, at.stiffness_s2, at.loss));
   load_echo out{};
-  std::vector<std::pair<double, complex>> returned;
-  for (const auto& [place, load] : loads) {
-    complex zv = force * std::sinh(gamma * place) / wave + moved * std::cosh(gamma * place);
-    for (const auto& [before, g] : returned) zv -= g * std::sinh(gamma * (place - before)) / (G * wave);
-    const complex z = load.impedance({0, w}), g = -z * zv / (1.0 + z * dent), onwards = std::exp(gamma * (to_bow_s - place));
-    returned.emplace_back(place, g);
+  for (const auto& [place, g] : returned_by_loads(loads, waves, to_bow_s, force, moved)) {
+    const auto onwards = std::exp(waves.gamma * (to_bow_s - place));
     out.own_force -= g * onwards;
     out.other_force -= g / onwards;
-    out.velocity -= g * (onwards - 1.0 / onwards) / (2 * G * wave * at.impedance_Ns_m);
+    out.velocity -= g * (onwards - 1.0 / onwards) / (2 * waves.force_factor * waves.impedance_ratio * at.impedance_Ns_m);
   }
-  out.near_field = dent / at.impedance_Ns_m * 0.5 * (out.own_force + out.other_force);
+  out.near_field = waves.dent / at.impedance_Ns_m * 0.5 * (out.own_force + out.other_force);
   return out;
 }
 
 /// Adds the echoes of all loads to a motion that was reconstructed without them.
 inline void add_echoes(const std::vector<scatterer>& loads, const bow_point& at, const std::array<std::vector<double>, 2>& force_N,
                        const std::array<std::vector<double>, 2>& moved_N, const band& limits, double rate_Hz, bow_motion<double>& motion) {
-  const double whole = at.delay_s[0] + at.delay_s[1];
-  std::array<std::vector<std::pair<double, scatterer>>, 2> on_side;
-  for (const scatterer& load : loads) {
-    const double place = load.position * whole;
-    if (place < at.delay_s[0]) on_side[0].emplace_back(place, load);
-    else on_side[1].emplace_back(whole - place, load);
-  }
+  const auto on_side = loads_by_side(loads, at.delay_s);
   held_record record(force_N[0].size(), 8192);
   std::array<std::vector<std::complex<double>>, 4> change;
   for (auto& c : change) c.resize(record.bins());
   for (std::size_t side = 0; side < 2; ++side) {
-    auto& mine = on_side[side];
+    const auto& mine = on_side[side];
     if (mine.empty()) continue;
-    std::sort(mine.begin(), mine.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     const auto force = record.spectrum(force_N[side]);
     const auto moved = moved_N[side].empty() ? std::vector<std::complex<double>>(record.bins()) : record.spectrum(moved_N[side]);
     for (std::size_t k = 1; k < record.bins(); ++k) {

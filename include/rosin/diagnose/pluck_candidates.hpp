@@ -130,7 +130,9 @@ inline void seek_beginnings(const scene_data& data, const scene_fit& already, co
 
 inline beginnings find_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue, bool strong, std::array<double, 2> noise) {
   beginnings out{std::vector<std::vector<scored_start>>(catalogue.size()), std::vector<bool>(catalogue.size(), false)};
-  const std::vector<fit_stage> looks = strong ? std::vector<fit_stage>{{1000, 3, true}, {1000, 8, true}, {12, 8, false}} : std::vector<fit_stage>{{}};
+  std::vector<fit_stage> looks = strong ? std::vector<fit_stage>{{1000, 3, true}, {1000, 8, true}, {12, 8, false}} : std::vector<fit_stage>{{}};
+  for (fit_stage& look : looks)  // no further than what is there already holds
+    for (const pluck_effect& e : already.effects) look.periods = std::min(look.periods, e.horizon_periods);
   for (const fit_stage& look : looks) {
     auto problem = data.problem(already.effects, already.value, look, noise);
     Eigen::VectorXd value = already.value;
@@ -236,7 +238,7 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
   detail::follow_up(data, fits, strong, noise);
   fits.insert(fits.end(), sought.begin(), sought.end());
   std::sort(fits.begin(), fits.end(), better);
-  if (strong && !fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek) fits.front() = detail::rewound(data, std::move(fits.front()), noise);
+  if (!fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek) fits.front() = detail::rewound(data, std::move(fits.front()), noise);
   detail::prefer_over_one_horizon(data, fits, noise);
   return fits;
 }
@@ -270,10 +272,7 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
       --count, tried = 0, k = 0;
       continue;
     }
-    std::vector<pluck_effect> catalogue;
-    for (const pluck_effect& e : all)
-      if (std::none_of(rest.effects.begin(), rest.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);
-    const auto fits = one_more_effect(data, rest, catalogue, rest.quality.residual_ratio[0] > 0.05, noise);
+    const auto fits = one_more_effect(data, rest, still_to_add(all, rest.effects), rest.quality.residual_ratio[0] > 0.05, noise);
     if (fits.empty() || fits.front().horizon_periods != fit.horizon_periods) continue;
     const double temper = std::max(1.0, fits.front().quality.inflation());
     if (0.5 * (detail::price_of(fit, noise) - detail::price_of(fits.front(), noise)) / temper > nats) fit = fits.front(), tried = 0, k = 0;

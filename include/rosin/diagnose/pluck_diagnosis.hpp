@@ -117,9 +117,7 @@ private:
   }
 
   [[nodiscard]] std::vector<scene_fit> candidates(int round) const {
-    std::vector<pluck_effect> catalogue;
-    for (const pluck_effect& e : all_)
-      if (std::none_of(now_.effects.begin(), now_.effects.end(), [&](const pluck_effect& h) { return h.id() == e.id(); })) catalogue.push_back(e);
+    const std::vector<pluck_effect> catalogue = still_to_add(all_, now_.effects);
     const bool strong = round == 0 ? now_.horizon_periods < 1e8 || now_.quality.residual_ratio[0] > 0.05 : now_.quality.residual_ratio[0] > 0.1;
     std::vector<scene_fit> fits = one_more_effect(d_.data, now_, catalogue, strong, weigh_);
     // Over all of a record, what is small per period may have turned partials too far for a score test: once more from the first periods.
@@ -264,7 +262,8 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
 /// The catalogue without what the declared model already contains.
 [[nodiscard]] inline std::vector<pluck_effect> catalogue_without(const std::vector<std::string>& physics, const string_facts& facts, const band& limits) {
   std::vector<pluck_effect> all = pluck_effects(facts);
-  for (const int channel : {0, 1}) all.push_back(sensor_nonlinearity_effect(facts, channel));
+  for (const int channel : {0, 1})
+    for (const bending where : {bending::behind_ringing, bending::before_ringing}) all.push_back(sensor_nonlinearity_effect(facts, channel, where));
   all.push_back(clock_drift_effect(facts));
   for (const int end : {0, 1}) all.push_back(sympathetic_string_effect(facts, end));
   if (facts.impedance_Ns_m > 0 && facts.length_m > 0) {

@@ -9,6 +9,7 @@
 #include <rosin/calibrate/pluck_layout.hpp>
 #include <rosin/diagnose/pluck_scene.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -60,11 +61,24 @@ struct pluck_effect {
   /// The search then begins where what a fit leaves tells of it, not at `starts`.
   std::function<std::vector<std::vector<double>>(const take_residual&)> seek{};
   double horizon_periods = 1e9;  ///< the model of the effect holds for so long
+  std::string variant{};         ///< one of several models of the same effect
+  std::string beside{};          ///< id of an effect without which this one is the same as another
 
   [[nodiscard]] std::string id() const {
     static constexpr const char* places[] = {"near", "far"};
-    return place < 0 ? name : name + "@" + places[place];
+    return (place < 0 ? name : name + "@" + places[place]) + (variant.empty() ? "" : " " + variant);
   }
 };
+
+/// What of a catalogue may be added to effects that are there already.
+[[nodiscard]] inline std::vector<pluck_effect> still_to_add(const std::vector<pluck_effect>& catalogue, const std::vector<pluck_effect>& already) {
+  std::vector<pluck_effect> out;
+  for (const pluck_effect& e : catalogue) {
+    const bool there = std::any_of(already.begin(), already.end(), [&](const pluck_effect& h) { return h.name == e.name && h.place == e.place; });
+    const bool makes_sense = e.beside.empty() || std::any_of(already.begin(), already.end(), [&](const pluck_effect& h) { return h.id() == e.beside; });
+    if (!there && makes_sense) out.push_back(e);
+  }
+  return out;
+}
 
 }  // namespace rosin

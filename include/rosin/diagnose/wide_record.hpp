@@ -6,7 +6,8 @@
 //
 //     v_a = F_1 sinh(g a) / Z_w,   v_b = F_2 sinh(g b) / Z_w,   f_a +- f_b = F_1 cosh(g a) +- F_2 cosh(g b) + Z_w (v_a +- v_b) tanh(g d)^(+-1)
 //
-// with a = tau_1 - d, b = tau_2 - d, d = w / (2 c), and torsion between them (torsion_pair.hpp).
+// with a = tau_1 - d, b = tau_2 - d, d = w / (2 c), and torsion between them (torsion_pair.hpp). Where a side carries loads or ends on what moves, what
+// stands for its sinh and cosh is in string_side.hpp.
 //
 #pragma once
 
@@ -126,10 +127,12 @@ private:
     const double a = take_.delay_s[0] - d, b = take_.delay_s[1] - d;
     const complex cosh_d = std::cosh(g * d), sinh_d = std::sinh(g * d), tanh_d = sinh_d * std::conj(cosh_d) / (std::norm(cosh_d) + pole_width * pole_width);
     const auto rolls = torsion(f);
+    const auto waves = detail::waves_at(f, eps, g);
     std::array<complex, 8> out;
     for (const std::size_t side : {0U, 1U}) {
       const double own = side == 0 ? a : b, sign = side == 0 ? 1 : -1;
-      const complex v = std::sinh(g * own) / Z, c = std::cosh(g * own), sum = c + tanh_d * Z * v;
+      const auto here = take_.sides[side].at(own, waves);
+      const complex v = here.velocity / Z, c = here.force, sum = c + tanh_d * Z * v;
       const complex difference = d > 0 ? sign * (c + Z * v * cosh_d * std::conj(sinh_d) / (std::norm(sinh_d) + 1e-12)) : complex(0);
       const complex fa = 0.5 * (sum + difference), fb = 0.5 * (sum - difference);
       out[side] = (side == 0 ? v : complex(0)) + (rolls.aa + near_field) * fa + rolls.across * fb;

@@ -5,6 +5,7 @@
 //
 //     quadratic share -> the sensor's own resonance -> leakage between the channels -> the far channel comes late, or has a clock of its own
 //
+// (the first two the other way about where it rings first).
 // The resonance w0^2 / (s^2 + s w0/q + w0^2) is stepped exactly for a force that is straight within a step; what comes late is read
 // from a cubic through four steps. Gain, AC coupling, hum, noise and rounding are the converter's (converter.hpp).
 //
@@ -20,6 +21,7 @@ namespace rosin {
 
 struct sensor_faults {
   std::array<double, 2> quadratic_per_N{}, resonance_Hz{}, resonance_q{10, 10};  ///< near, far; resonance 0: none
+  std::array<bool, 2> rings_first{};  ///< and bends what rings; else the other way about
   double crosstalk = 0;  ///< share of each channel in the other
   double skew_s = 0;     ///< the far channel comes late by this
   double clock_drift = 0;  ///< its clock is fast by this, relative
@@ -50,9 +52,12 @@ inline void ring_along(std::vector<double>& x, double frequency_Hz, double q, do
 /// begin_s: where the take begins, and both clocks show the same.
 inline void disturb(std::array<std::vector<double>, 2>& end_N, const sensor_faults& faults, double step_s, double begin_s = 0) {
   for (std::size_t c = 0; c < 2; ++c) {
-    if (const double a = faults.quadratic_per_N[c]; a != 0)
-      for (double& f : end_N[c]) f += a * f * f;
+    const auto bend = [&] {
+      for (double& f : end_N[c]) f += faults.quadratic_per_N[c] * f * f;
+    };
+    if (!faults.rings_first[c]) bend();
     if (faults.resonance_Hz[c] > 0) detail::ring_along(end_N[c], faults.resonance_Hz[c], faults.resonance_q[c], step_s);
+    if (faults.rings_first[c]) bend();
   }
   if (faults.crosstalk != 0)
     for (std::size_t n = 0; n < end_N[0].size(); ++n) {

@@ -4,8 +4,9 @@
 // Takes of a string that carries something, or that ends on something that moves, sampled: the same signals through the same
 // low-pass as those of the ideal rig (modal_pluck.hpp, modal_stroke.hpp), so that one may stand in for the other.
 //
-// A string that moves in two planes, slightly detuned, is two strings: of a pluck of 1 N the sensors see 1 / (1 + c) of the one and
-// c / (1 + c) of the other, c = tan(angle of the pluck) tan(angle of the sensors), and 1 N in all as long as the wire holds.
+// A string that moves in two planes, slightly detuned, is two strings (of one tension, where motion adds to it): of a pluck of 1 N the sensors see
+// 1 / (1 + c) of the one and c / (1 + c) of the other, c = tan(angle of the pluck) tan(angle of the sensors), and 1 N in all as long as the wire
+// holds. c does not tell the angles: they are taken to be alike.
 //
 #pragma once
 
@@ -87,10 +88,20 @@ private:
   std::size_t steps_;
 };
 
-/// The other plane's share into the forces on the ends, and the first plane's as it then is.
-inline void add_plane(burdened_steps& along, const burdened_steps& across, double coupling) {
+/// A pluck in two planes, as the sensors see it.
+[[nodiscard]] inline burdened_steps step_in_two_planes(const modal_rig& rig, const rig_burden& burden, const burdened_pluck& wire, const burdened_steps_of_take& how) {
+  auto other = rig;
+  other.string.fundamental_Hz *= 1 + burden.detuning;
+  other.string.tension_N *= std::pow(1 + burden.detuning, 2);
+  const double c = burden.coupling, along_share = 1 / std::sqrt(1 + std::abs(c)), across_share = std::sqrt(std::abs(c)) * along_share;
+  auto along_wire = wire, across_wire = wire;
+  along_wire.force_N *= along_share, across_wire.force_N *= across_share;
+  auto [along, across] = step_planes(rig, along_wire, other, across_wire, burden.string, how.duration_s(), how.limit_Hz, how.step_s);
   for (std::size_t e = 0; e < 2; ++e)
-    for (std::size_t n = 0; n < along.end_N[e].size(); ++n) along.end_N[e][n] = (along.end_N[e][n] + coupling * across.end_N[e][n]) / (1 + coupling);
+    for (std::size_t n = 0; n < along.end_N[e].size(); ++n) along.end_N[e][n] = (along.end_N[e][n] / along_share + c * across.end_N[e][n] / across_share) / (1 + c);
+  for (auto* signal : {&along.force_N, &along.centre_m_s})
+    for (double& x : *signal) x /= along_share;
+  return std::move(along);
 }
 
 }  // namespace detail
@@ -106,13 +117,7 @@ inline void add_plane(burdened_steps& along, const burdened_steps& across, doubl
   // A sudden release falls on a step; how much later it was meant to be, the whole take is.
   const double meant = (pluck.release_s + how.lead_s) / how.step_s, stepped = pluck.release_duration_s > 0 ? meant : std::round(meant);
   const burdened_pluck wire{pluck.position, pluck.force_N, stepped * how.step_s, pluck.release_duration_s, burden.pluck_width_m};
-  auto steps = step_pluck(rig, burden.string, wire, how.duration_s(), how.limit_Hz, how.step_s);
-  if (burden.coupling != 0) {
-    auto other = rig;
-    other.string.fundamental_Hz *= 1 + burden.detuning;
-    other.string.tension_N *= std::pow(1 + burden.detuning, 2);
-    detail::add_plane(steps, step_pluck(other, burden.string, wire, how.duration_s(), how.limit_Hz, how.step_s), burden.coupling);
-  }
+  auto steps = burden.coupling != 0 ? detail::step_in_two_planes(rig, burden, wire, how) : step_pluck(rig, burden.string, wire, how.duration_s(), how.limit_Hz, how.step_s);
   if (meant != stepped)
     for (auto* signal : {&steps.end_N[0], &steps.end_N[1], &steps.force_N, &steps.centre_m_s}) *signal = detail::read_along(*signal, 1, stepped - meant);
   disturb(steps.end_N, burden.sensors, how.step_s, how.lead_s);

@@ -102,6 +102,10 @@ public:
   [[nodiscard]] Eigen::VectorXd centre_left_out_m_N() const { return (rest_ - rest_twist_).head(contacts_); }
   [[nodiscard]] Eigen::VectorXd twist_left_out_m_N() const { return rest_twist_.head(contacts_); }
 
+  /// What the motion adds to the tension, and what else is to be added to it (port_bank.hpp).
+  [[nodiscard]] double raised_N() const noexcept { return bank_.raised_N(); }
+  void add_tension(double across_N) noexcept { bank_.add_tension(across_N); }
+
   struct reading {
     Eigen::Vector2d end_N;                 ///< forces on near and far end
     Eigen::VectorXd surface_m_s, twist_m_s;  ///< at the contacts, of the modes alone; the centre moves with the difference

@@ -11,6 +11,10 @@
 #include <rosin/simulate/burdened_string.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 
+#include <array>
+#include <span>
+#include <vector>
+
 namespace rosin {
 
 /// Forces on the ends and the truth at the contact at every step; instant of step n: n step_s.
@@ -20,6 +24,7 @@ struct burdened_steps {
   std::vector<double> force_N{}, centre_m_s{}, twist_m_s{}, rod_m_s{};
   double centre_left_out_m_N = 0, twist_left_out_m_N = 0;  ///< the velocities lack these times the rate of the force
   std::vector<double> temperature_K{};  ///< rise, where the law has one
+  std::vector<double> raised_N{};       ///< what a pluck's motion adds to the tension, where E A is known
   std::size_t slips = 0, unconverged = 0;
   double slipping = 0;  ///< share of the second half's steps
 
@@ -71,8 +76,9 @@ private:
 
 /// A sudden release happens at the step nearest to it, and there at once: were it spread over a step, every pluck's spectrum would fall
 /// towards high frequencies by another amount (a thousandth at 50 kHz and 0.5 us), as no two releases lie alike between the steps.
+/// `across_N`: what motion in another plane adds to the tension, step by step (of the last one from there on); needs E A.
 [[nodiscard]] inline burdened_steps step_pluck(const modal_rig& rig, const string_burden& burden, const burdened_pluck& pluck, double duration_s, double mode_limit_Hz,
-                                               double step_s) {
+                                               double step_s, std::span<const double> across_N = {}) {
   const auto grip = grip_of(pluck, rig.string.length_m);
   const bool guarded = burden.stop.stiffness_N_m > 0;
   const auto wires = static_cast<Eigen::Index>(grip.size()), contacts = wires + (guarded ? 1 : 0);
@@ -81,6 +87,7 @@ private:
   for (const auto& [position, part] : grip) share[static_cast<Eigen::Index>(at.size())] = part, at.push_back(position);
   if (guarded) at.push_back(burden.stop.position);
   burdened_string string{rig, burden, at, mode_limit_Hz, step_s};
+  if (!across_N.empty()) string.add_tension(across_N.front());
   string.rest_under(share * pluck.force_N);
   const double low = std::min(pluck.position, burden.stop.position), high = std::max(pluck.position, burden.stop.position);
   guarded_point point(burden.stop, pluck.force_N * low * (1 - high) * rig.string.length_m / rig.string.tension_N);
@@ -91,6 +98,7 @@ private:
   const auto release = static_cast<std::size_t>(std::lround(std::max(0.0, pluck.release_s / step_s)));
   for (std::size_t n = 0; n < steps; ++n) {
     double force = sudden ? (n <= release ? pluck.force_N : 0) : wire_force(pluck, static_cast<double>(n) * step_s);
+    if (!across_N.empty()) string.add_tension(across_N[std::min(n, across_N.size() - 1)]);
     const Eigen::VectorXd free = string.free_velocity();
     Eigen::VectorXd forces = share * force;
     if (guarded) forces[wires] = point.force_N(free[wires] + string.mobility().row(wires).dot(share) * force, string.mobility()(wires, wires), step_s);
@@ -100,7 +108,18 @@ private:
     for (std::size_t e = 0; e < 2; ++e) out.end_N[e].push_back(now.end_N[static_cast<Eigen::Index>(e)]);
     out.force_N.push_back(force);
     out.centre_m_s.push_back(share.dot(now.surface_m_s - now.twist_m_s));
+    if (burden.axial_stiffness_N > 0) out.raised_N.push_back(string.raised_N());
   }
+  return out;
+}
+
+/// A pluck that moves a string in two planes, which differ in pitch: what each of them does by itself. Where motion stretches the string, each
+/// also feels what the other's adds to the tension; the first is stepped once more with what the second then does.
+[[nodiscard]] inline std::array<burdened_steps, 2> step_planes(const modal_rig& along, const burdened_pluck& wire, const modal_rig& across, const burdened_pluck& other,
+                                                               const string_burden& burden, double duration_s, double mode_limit_Hz, double step_s) {
+  std::array<burdened_steps, 2> out{step_pluck(along, burden, wire, duration_s, mode_limit_Hz, step_s), {}};
+  out[1] = step_pluck(across, burden, other, duration_s, mode_limit_Hz, step_s, out[0].raised_N);
+  if (burden.axial_stiffness_N > 0) out[0] = step_pluck(along, burden, wire, duration_s, mode_limit_Hz, step_s, out[1].raised_N);
   return out;
 }
 

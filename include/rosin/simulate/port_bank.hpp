@@ -6,7 +6,8 @@
 //
 //     T + (E A / 4) sum k_n^2 q_n^2,
 //
-// a force on every mode that is carried on to the end of the step from what the modes do at its beginning.
+// a force on every mode that is carried on to the end of the step from what the modes do at its beginning. What motion across this plane adds to the
+// tension may be given, step by step.
 //
 #pragma once
 
@@ -78,6 +79,9 @@ public:
     const auto turning = size() - transverse_;
     return (shape_.col(port).tail(turning).array() * (re_.tail(turning) + once_re_.tail(turning) * (shape_.bottomRows(turning) * force).array())).sum();
   }
+  /// What this motion adds to the tension, N; and what else is to be added to it from the next step on (E A above 0 only).
+  [[nodiscard]] double raised_N() const noexcept { return raised_; }
+  void add_tension(double across_N) noexcept { across_ = across_N; }
   /// Of the string as it stands, mean: sum k_n^2 q_n^2 / 4.
   [[nodiscard]] double strain() const { return (k_ * (q_re_ * re_ + q_im_ * im_)).square().sum() / 4; }
   void advance(const Eigen::VectorXd& force) {
@@ -132,12 +136,12 @@ private:
 
   void raise_tension(const Eigen::ArrayXd& re, const Eigen::ArrayXd& im) {
     const Eigen::ArrayXd q = q_re_ * re + q_im_ * im + step_ * re;  // at the end of the step to come
-    const double raised = axial_ / 4 * (k_ * q).square().sum();
-    own_ = -raised * length_ / 2 * k_.square() * q;
-    pull_ = raised * Eigen::Vector2d{(k_ * q).sum(), -(k_ * q * (pi * number).cos()).sum()};
+    raised_ = axial_ / 4 * (k_ * q).square().sum();
+    own_ = -(raised_ + across_) * length_ / 2 * k_.square() * q;
+    pull_ = (raised_ + across_) * Eigen::Vector2d{(k_ * q).sum(), -(k_ * q * (pi * number).cos()).sum()};
   }
 
-  double length_, axial_, step_;
+  double length_, axial_, step_, raised_ = 0, across_ = 0;
   Eigen::Index transverse_ = 0;
   Eigen::ArrayXd re_, im_, own_, turn_re_, turn_im_, push_re_, push_im_, once_re_, once_im_, q_re_, q_im_, k_, end_damping_, felt_, now_re_, now_im_, drive_;
   Eigen::MatrixXd shape_, end_;

@@ -4,9 +4,11 @@
 //
 #pragma once
 
+#include <rosin/simulate/burdened_string.hpp>
 #include <rosin/simulate/modal_bank.hpp>
 
 #include <random>
+#include <tuple>
 
 #include "contact_rigs.hpp"
 
@@ -17,22 +19,33 @@ struct two_places {
   std::vector<double> near, far, v_near, v_far, force;
 };
 
+/// Two forces that hardly have anything above 10 kHz, step by step.
+class smooth_forces {
+public:
+  std::array<double, 2> operator()(double fade) {
+    for (std::size_t a = 0; a < 4; a += 2) {  // two first-order low-passes
+      slow_[a] += 0.02 * (fade * normal_(source_) - slow_[a]);
+      slow_[a + 1] += 0.02 * (slow_[a] - slow_[a + 1]);
+    }
+    return {slow_[1], slow_[3]};
+  }
+
+private:
+  std::mt19937 source_{5};
+  std::normal_distribution<double> normal_;
+  std::array<double, 4> slow_{};
+};
+
+constexpr int finer = 4, driven_samples = 8000;
+inline double fade_at(int step) { return step >= 800 * finer && step < 7000 * finer ? 1 : 0; }
+
 inline two_places drive(double position, double width_m) {
-  constexpr int finer = 4;
   const double half = 0.5 * width_m / e_string.length_m;
   rosin::modal_bank<2> bank(rosin::transverse_modes(e_string, 200e3), rosin::damping_convention::viscous, {position - half, position + half}, 1 / (finer * rate));
-  std::mt19937 source(5);
-  std::normal_distribution<double> normal;
+  smooth_forces forces;
   two_places out;
-  std::array<double, 4> slow{};
-  for (int i = 0; i < 8000 * finer; ++i) {
-    const double fade = i < 800 * finer ? 0 : i < 7000 * finer ? 1 : 0;
-    for (int k = 0; k < 2; ++k) {  // two first-order low-passes: hardly anything above 10 kHz
-      const auto a = static_cast<std::size_t>(2 * k);
-      slow[a] += 0.02 * (fade * normal(source) - slow[a]);
-      slow[a + 1] += 0.02 * (slow[a] - slow[a + 1]);
-    }
-    const std::array<double, 2> force{slow[1], slow[3]};
+  for (int i = 0; i < driven_samples * finer; ++i) {
+    const auto force = forces(fade_at(i));
     const auto free = bank.free();
     if (i % finer == 0) {
       out.force.push_back(force[0] + force[1]);
@@ -42,6 +55,24 @@ inline two_places drive(double position, double width_m) {
       out.v_far.push_back(free.velocity[1] + bank.mobility(1, 0) * force[0] + bank.mobility(1, 1) * force[1]);
     }
     bank.advance(force);
+  }
+  return out;
+}
+
+/// The same of a string that carries something or ends on something that moves.
+inline two_places drive(double position, double width_m, const rosin::string_burden& burden) {
+  const double half = 0.5 * width_m / e_string.length_m;
+  rosin::burdened_string string({.string = e_string}, burden, {position - half, position + half}, 200e3, 1 / (finer * rate));
+  smooth_forces forces;
+  two_places out;
+  for (int i = 0; i < driven_samples * finer; ++i) {
+    const auto force = forces(fade_at(i));
+    std::ignore = string.free_velocity();  // begins the step
+    const auto now = string.advance(Eigen::Vector2d{force[0], force[1]});
+    if (i % finer != 0) continue;
+    out.force.push_back(force[0] + force[1]);
+    out.near.push_back(now.end_N[0]), out.far.push_back(now.end_N[1]);
+    out.v_near.push_back(now.surface_m_s[0]), out.v_far.push_back(now.surface_m_s[1]);
   }
   return out;
 }

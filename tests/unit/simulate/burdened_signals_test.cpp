@@ -99,6 +99,19 @@ TEST_CASE("a second plane takes its share of a pluck and none of what the wire h
   CHECK(apart(both->force_near_N, sum) < 1e-9);
 }
 
+TEST_CASE("planes of one pitch stretch a string as one plane does, since they have one tension") {
+  rosin::rig_burden one, two;
+  one.string.axial_stiffness_N = two.string.axial_stiffness_N = 2e4;
+  two.coupling = 0.4;
+  const rosin::modal_pluck pluck{.force_N = 1.5, .release_s = 0.004, .duration_s = 0.02};
+  const auto single = rosin::simulate_pluck(rig, one, pluck, settings), both = rosin::simulate_pluck(rig, two, pluck, settings), slack = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
+  REQUIRE((single && both && slack));
+  const double stretched = apart(single->force_near_N, slack->force_near_N);
+  CHECK(stretched > 0.01);
+  CHECK(apart(both->force_near_N, single->force_near_N) < 0.01 * stretched);  // the planes were stepped one after the other
+  CHECK(apart(both->centre_velocity_m_s, single->centre_velocity_m_s) < 0.01 * apart(single->centre_velocity_m_s, slack->centre_velocity_m_s));
+}
+
 TEST_CASE("what cannot be is refused") {
   const auto says = [](const rosin::rig_burden& burden, const char* what) {
     const auto take = rosin::simulate_pluck(rig, burden, {}, settings);

@@ -1,0 +1,98 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// One side of a string as the force F on its end tells it, place by place, with the loads on the way and the end's own motion V = Z Y F:
+//
+//     Z_w v(x) = F sinh(gamma x) + (Z_w / Z) V cosh(gamma x) - sum_(x_i < x) g_i sinh(gamma (x - x_i)) / G
+//     f(x)     = F cosh(gamma x) + (Z_w / Z) V sinh(gamma x) - sum_(x_i < x) g_i cosh(gamma (x - x_i)),
+//
+// x being the travel time from the end and g_i what the i-th load returns (loaded_motion.hpp). A plain side is sinh and cosh.
+//
+#pragma once
+
+#include <rosin/diagnose/pluck_scene.hpp>
+#include <rosin/propagate/dispersion.hpp>
+
+#include <algorithm>
+#include <array>
+#include <complex>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace rosin {
+
+namespace detail {
+
+using load_on_side = std::pair<double, scatterer>;  ///< travel time from the end, and what is there
+
+/// A string's waves at one frequency.
+struct side_waves {
+  double omega = 0;
+  std::complex<double> gamma;  ///< per second of travel
+  double impedance_ratio = 1;  ///< Z_w / Z
+  double force_factor = 1;     ///< G
+  std::complex<double> dent;   ///< the near field under a load, Z v / g
+};
+[[nodiscard]] inline side_waves waves_at(double f_Hz, double stiffness_s2, std::complex<double> gamma) {
+  const double w = 2 * std::numbers::pi * f_Hz, G = rosin::force_factor(w, stiffness_s2), wave = wave_impedance_ratio(w, stiffness_s2);
+  return {w, gamma, wave, G, {0, -near_field_ratio(w, stiffness_s2) / (2 * wave * G)}};
+}
+
+/// What every load nearer than `place_s` returns, outwards from the end; F and Z V at the end.
+[[nodiscard]] inline std::vector<std::pair<double, std::complex<double>>> returned_by_loads(const std::vector<load_on_side>& loads, const side_waves& s, double place_s,
+                                                                                             std::complex<double> force, std::complex<double> moved) {
+  std::vector<std::pair<double, std::complex<double>>> returned;
+  for (const auto& [place, load] : loads) {
+    if (place >= place_s) break;
+    std::complex<double> zv = force * std::sinh(s.gamma * place) / s.impedance_ratio + moved * std::cosh(s.gamma * place);
+    for (const auto& [before, g] : returned) zv -= g * std::sinh(s.gamma * (place - before)) / (s.force_factor * s.impedance_ratio);
+    const std::complex<double> z = load.impedance({0, s.omega});
+    returned.emplace_back(place, -z * zv / (1.0 + z * s.dent));
+  }
+  return returned;
+}
+
+/// Loads of both sides of a contact, each seen from its end.
+[[nodiscard]] inline std::array<std::vector<load_on_side>, 2> loads_by_side(const std::vector<scatterer>& loads, const std::array<double, 2>& delay_s) {
+  const double whole = delay_s[0] + delay_s[1];
+  std::array<std::vector<load_on_side>, 2> out;
+  for (const scatterer& load : loads) {
+    const double place = load.position * whole;
+    if (place < delay_s[0]) out[0].emplace_back(place, load);
+    else out[1].emplace_back(whole - place, load);
+  }
+  for (auto& side : out) std::sort(side.begin(), side.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return out;
+}
+
+}  // namespace detail
+
+struct string_side {
+  std::vector<detail::load_on_side> loads{};
+  yielding_end end{};
+
+  /// Z_w v and f, per newton on the end.
+  struct state {
+    std::complex<double> velocity, force;
+  };
+  [[nodiscard]] state at(double place_s, const detail::side_waves& s) const {
+    const std::complex<double> sinh = std::sinh(s.gamma * place_s), cosh = std::cosh(s.gamma * place_s);
+    if (loads.empty() && end.rigid()) return {sinh, cosh};
+    const std::complex<double> moved = end.rigid() ? 0.0 : end.admittance({0, s.omega});
+    state out{sinh + s.impedance_ratio * moved * cosh, cosh + s.impedance_ratio * moved * sinh};
+    for (const auto& [place, g] : detail::returned_by_loads(loads, s, place_s, 1, moved)) {
+      out.velocity -= g * std::sinh(s.gamma * (place_s - place)) / s.force_factor;
+      out.force -= g * std::cosh(s.gamma * (place_s - place));
+    }
+    return out;
+  }
+};
+
+/// Both sides of a contact on a scene's string.
+[[nodiscard]] inline std::array<string_side, 2> sides_of(const pluck_scene& scene, const std::array<double, 2>& delay_s) {
+  auto loads = detail::loads_by_side(scene.scatterers, delay_s);
+  return {string_side{std::move(loads[0]), scene.ends[0]}, string_side{std::move(loads[1]), scene.ends[1]}};
+}
+
+}  // namespace rosin
