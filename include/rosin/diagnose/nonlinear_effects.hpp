@@ -38,28 +38,46 @@ inline void bring_back_level(std::vector<double>& felt, double a, double corner_
 /// Where a sensor that rings as well is curved.
 enum class bending { behind_ringing, before_ringing };
 
-/// output = f + a f^2 in one channel. What comes behind that, leakage and a high-pass (and the ringing of a sensor that bends first), a f^2 passes, too.
+namespace detail {
+
+/// What comes behind the bend of a channel: leakage, high-pass, and the ringing of a sensor that bends first.
+[[nodiscard]] inline pluck_scene behind_the_bend(const pluck_scene& scene, std::size_t channel, bending where) {
+  pluck_scene behind;
+  behind.crosstalk = scene.crosstalk;
+  for (std::size_t c = 0; c < 2; ++c) behind.sensors[c].corner_Hz = scene.sensors[c].corner_Hz;
+  if (where == bending::before_ringing) behind.sensors[channel].resonance_Hz = scene.sensors[channel].resonance_Hz, behind.sensors[channel].q = scene.sensors[channel].q;
+  return behind;
+}
+
+/// A channel as it was there, in newtons; a: of the bend that is to be undone.
+[[nodiscard]] inline std::vector<double> at_the_bend(const pluck_take& take, const pluck_scene& behind, std::size_t channel, const std::array<double, 2>& gain, double a) {
+  const std::vector<double>&own = take.force_N[channel], &other = take.force_N[1 - channel];
+  const double leaks = behind.crosstalk;
+  std::vector<double> felt(own.size());
+  for (std::size_t i = 0; i < felt.size(); ++i) felt[i] = (own[i] / gain[channel] - leaks * other[i] / gain[1 - channel]) / (1 - leaks * leaks);
+  const sensor_response& sensor = behind.sensors[channel];
+  if (sensor.corner_Hz > 0) bring_back_level(felt, a, sensor.corner_Hz, take.rate_Hz);
+  if (sensor.resonance_Hz > 0) unring(felt, sensor, take.rate_Hz);
+  return felt;
+}
+
+}  // namespace detail
+
+/// output = f + a f^2 in one channel. What comes behind that a f^2 passes, too.
 inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel, bending where = bending::behind_ringing) {
   pluck_effect e{"sensor-nonlinearity", channel, false, {{"quadratic_per_N", -0.6, 0.6, 1e-4, false, -1, true}}, {{0}}, -3, {}};
   if (where == bending::before_ringing) e.variant = "before it rings", e.beside = channel == 0 ? "sensor-resonance@near" : "sensor-resonance@far";
   e.undo = [channel, where](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout&, const Eigen::VectorXd& v, double a) {
-    const auto c = static_cast<std::size_t>(channel);
+    const auto own = static_cast<std::size_t>(channel);
     const std::array<double, 2> gain{pluck_layout::gain(v, 0), pluck_layout::gain(v, 1)};
-    pluck_scene behind;
-    behind.crosstalk = scene.crosstalk, behind.sensors[c].corner_Hz = scene.sensors[c].corner_Hz, behind.sensors[1 - c].corner_Hz = scene.sensors[1 - c].corner_Hz;
-    if (where == bending::before_ringing) behind.sensors[c].resonance_Hz = scene.sensors[c].resonance_Hz, behind.sensors[c].q = scene.sensors[c].q;
+    const pluck_scene behind = detail::behind_the_bend(scene, own, where);
     for (pluck_take& take : takes) {
-      const std::vector<double>&own = take.force_N[c], &other = take.force_N[1 - c];
-      std::vector<double> felt(own.size());
-      for (std::size_t i = 0; i < felt.size(); ++i)
-        felt[i] = (own[i] / gain[c] - scene.crosstalk * other[i] / gain[1 - c]) / (1 - scene.crosstalk * scene.crosstalk);
-      if (behind.sensors[c].corner_Hz > 0) detail::bring_back_level(felt, a, behind.sensors[c].corner_Hz, take.rate_Hz);
-      if (behind.sensors[c].resonance_Hz > 0) detail::unring(felt, behind.sensors[c], take.rate_Hz);
+      const std::vector<double> felt = detail::at_the_bend(take, behind, own, gain, a);
       std::array<std::vector<double>, 2> excess{std::vector<double>(felt.size()), std::vector<double>(felt.size())};
-      for (std::size_t i = 0; i < felt.size(); ++i) excess[c][i] = felt[i] - detail::straightened(felt[i], a);
+      for (std::size_t i = 0; i < felt.size(); ++i) excess[own][i] = felt[i] - detail::straightened(felt[i], a);
       pass_sensors(excess, behind, take.rate_Hz);
-      for (std::size_t k = 0; k < 2; ++k)
-        for (std::size_t i = 0; i < felt.size(); ++i) take.force_N[k][i] -= gain[k] * excess[k][i];
+      for (std::size_t c = 0; c < 2; ++c)
+        for (std::size_t i = 0; i < felt.size(); ++i) take.force_N[c][i] -= gain[c] * excess[c][i];
     }
   };
   return e;
