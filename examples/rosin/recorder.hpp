@@ -36,7 +36,7 @@ struct take_report {
   std::vector<std::string> problems;  ///< in the order in which they came
   bool triggered = false, over = false;  ///< over: the source has ended, or the disk; no take can follow
   double worst_block_s = 0, worst_block_of_s = 0;  ///< longest time that a block of frames took besides its writing, and how long the block itself lasts
-  double worst_block_processor_s = 0;              ///< most that the processor was at work for a block, besides its writing: the rest of worst_block_s the thread was not let run
+  double worst_block_processor_s = 0;              ///< most that the processor was at work for any block, besides its writing
   double worst_write_s = 0;                        ///< longest time that the file system took for one write, the first with the making of the file; the frames wait in a ring meanwhile
   double busy = 0;                    ///< share of the time that the frames' treatment took
 

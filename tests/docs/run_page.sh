@@ -14,7 +14,7 @@ set -euo pipefail
 page=$1 tool=$2 scratch=$3
 root=$(cd "$(dirname "$0")/../.." && pwd)
 
-if [ -e "$scratch" ] && [ ! -d "$scratch/.page" ]; then echo "run_page.sh: $scratch is no scratch folder of an earlier run: left alone" >&2; exit 1; fi
+if [ -n "$(ls -A "$scratch" 2>/dev/null)" ] && [ ! -d "$scratch/.page" ]; then echo "run_page.sh: $scratch is no scratch folder of an earlier run: left alone" >&2; exit 1; fi
 rm -rf "$scratch"
 mkdir -p "$scratch/build/release" "$scratch/.page"
 for entry in "$root"/* "$root"/.ci; do

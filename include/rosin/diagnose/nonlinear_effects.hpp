@@ -111,12 +111,16 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
       };
       auto excess = run(slack, axial_N / (4 * tension)).force;
       const auto plain = run(mean, 0).force;
-      for (std::size_t c = 0; c < 2; ++c)
+      const double early_s = std::max({0.0, -scene.sensors[0].delay_s, -scene.sensors[1].delay_s});  // a channel may have it before the string
+      const std::size_t lead = std::min(first, static_cast<std::size_t>(std::ceil(early_s * rate)));
+      for (std::size_t c = 0; c < 2; ++c) {
         for (std::size_t i = 0; i < count; ++i) excess[c][i] -= plain[c][i];
+        excess[c].insert(excess[c].begin(), lead, 0.0);
+      }
       pass_wire(excess, scene, rate);
       pass_sensors(excess, scene, rate);
       for (std::size_t c = 0; c < 2; ++c)
-        for (std::size_t i = 0; i < count; ++i) takes[t].force_N[c][first + i] -= newtons * pluck_layout::gain(v, c) * excess[c][i];
+        for (std::size_t i = 0; i < excess[c].size(); ++i) takes[t].force_N[c][first - lead + i] -= newtons * pluck_layout::gain(v, c) * excess[c][i];
     }
   };
   return e;
@@ -128,16 +132,19 @@ inline pluck_effect phantom_partials_effect(const string_facts& f, const band& l
   const double tension = f.impedance_Ns_m * 2 * f.length_m * f.fundamental_Hz;
   pluck_effect e{"phantom-partials", channel, false, {{"sensed_axial_stiffness_N", -3e6, 3e6, 1e-3 * tension, false, -1, true}}, {{0}}, -3, {}};
   e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout, const Eigen::VectorXd& v, double sensed_N) {
-    const auto c = static_cast<std::size_t>(channel);
-    const double gain = std::exp(v[pluck_layout::gain_near + channel]);
     for (std::size_t t = 0; t < takes.size(); ++t) {
-      std::vector<double>& recorded = takes[t].force_N[c];
+      const std::size_t size = takes[t].force_N[0].size();
       const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate, newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
-      const auto first = std::min(recorded.size(), static_cast<std::size_t>(std::max(0.0, std::ceil(released))));
+      const auto first = std::min(size, static_cast<std::size_t>(std::max(0.0, std::ceil(released))));
       const stretching_pluck string(layout.string(v), v[layout.position(t)], newtons / tension, {limits.stop_Hz, limits.stop_Hz}, 120, {scene.detuning, scene.coupling});
-      const auto moves = string.run(0, std::min(1.0, static_cast<double>(first) - released) / rate, 1 / rate, 1, recorded.size() - first);
-      for (std::size_t i = 0; i < first; ++i) recorded[i] -= gain * sensed_N * string.held_strain();
-      for (std::size_t i = first; i < recorded.size(); ++i) recorded[i] -= gain * sensed_N * moves.strain[i - first];
+      const auto moves = string.run(0, std::min(1.0, static_cast<double>(first) - released) / rate, 1 / rate, 1, size - first);
+      std::array<std::vector<double>, 2> felt{std::vector<double>(size), std::vector<double>(size)};
+      auto& own = felt[static_cast<std::size_t>(channel)];
+      std::fill_n(own.begin(), first, sensed_N * string.held_strain());
+      for (std::size_t i = first; i < size; ++i) own[i] = sensed_N * moves.strain[i - first];
+      pass_sensors(felt, scene, rate);
+      for (std::size_t c = 0; c < 2; ++c)
+        for (std::size_t i = 0; i < size; ++i) takes[t].force_N[c][i] -= pluck_layout::gain(v, c) * felt[c][i];
     }
   };
   return e;

@@ -205,8 +205,8 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
   }
 }
 
-/// A strong effect once more from the first periods on, in small steps: over all of the record the fit may have come to rest with partials a
-/// little off.
+/// An effect that leaves more than noise once more from the first periods on, in small steps: over all of the record the fit may have come to rest
+/// with partials a little off.
 inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<double, 2> noise) {
   std::vector<fit_stage> stages;
   for (double periods = 1.5; periods < std::min(100.0, fit.horizon_periods); periods *= 2) stages.push_back({1000, periods, true});

@@ -150,8 +150,9 @@ private:
     d_.mismatched = true;
     d_.found_gain.push_back(c.gain);
     d_.alternatives.clear();
+    const auto is_variant = [&](const scene_fit& f) { return f.effects.back().name == tried.effects.back().name && f.effects.back().place == tried.effects.back().place; };
     for (const scene_fit& f : fits)
-      if (&f != &tried && f.horizon_periods == tried.horizon_periods && 0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
+      if (!is_variant(f) && f.horizon_periods == tried.horizon_periods && 0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
         d_.alternatives.push_back(f.effects.back().id());
     now_ = tried;
   }

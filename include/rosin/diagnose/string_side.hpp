@@ -1,12 +1,13 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// One side of a string as the force F on its end tells it, place by place, with the loads on the way and the end's own motion V = Z Y F:
+// One side of a string as the force F on its end tells it, place by place, with the loads on the way and the end's own motion V = Y F. Its waves have
 //
-//     Z_w v(x) = F sinh(gamma x) + (Z_w / Z) V cosh(gamma x) - sum_(x_i < x) g_i sinh(gamma (x - x_i)) / G
-//     f(x)     = F cosh(gamma x) + (Z_w / Z) V sinh(gamma x) - sum_(x_i < x) g_i cosh(gamma (x - x_i)),
+//     Z_w v(x) = F sinh(gamma x) + Z V (r cosh(gamma x) + i b sinh(gamma x)) - sum_(x_i < x) (g_i / G) sinh(gamma (x - x_i)),
+//     f(x) / G = F cosh(gamma x) + Z V (r sinh(gamma x) + i b cosh(gamma x)) - sum_(x_i < x) (g_i / G) cosh(gamma (x - x_i)),
 //
-// x being the travel time from the end and g_i what the i-th load returns (loaded_motion.hpp). A plain side is sinh and cosh.
+// r = (Z_w / Z) / G and b = q rho K / (w G) as in bow_point_transfer.hpp, x being the travel time from the end, g_i what the i-th load returns
+// (loaded_motion.hpp), and f G times what a constant impedance would make of the waves. A plain side is sinh and cosh.
 //
 #pragma once
 
@@ -33,10 +34,12 @@ struct side_waves {
   double impedance_ratio = 1;  ///< Z_w / Z
   double force_factor = 1;     ///< G
   std::complex<double> dent;   ///< the near field under a load, Z v / g
+  std::complex<double> bent;   ///< i b, the near field of an end that moves
 };
 [[nodiscard]] inline side_waves waves_at(double f_Hz, double stiffness_s2, std::complex<double> gamma) {
   const double w = 2 * std::numbers::pi * f_Hz, G = rosin::force_factor(w, stiffness_s2), wave = wave_impedance_ratio(w, stiffness_s2);
-  return {w, gamma, wave, G, {0, -near_field_ratio(w, stiffness_s2) / (2 * wave * G)}};
+  const double rho = near_field_ratio(w, stiffness_s2), bent = w > 0 ? phase_rate(w, stiffness_s2) * rho * stiffness_ratio(w, stiffness_s2) / (w * G) : 0;
+  return {w, gamma, wave, G, {0, -rho / (2 * wave * G)}, {0, bent}};
 }
 
 /// What every load nearer than `place_s` returns, outwards from the end; F and Z V at the end.
@@ -70,29 +73,32 @@ struct side_waves {
 
 struct string_side {
   std::vector<detail::load_on_side> loads{};
-  yielding_end end{};
+  std::vector<admittance_mode> end_modes{};
 
-  /// Z_w v and f, per newton on the end.
+  /// Z_w v and f / G, per newton on the end.
   struct state {
     std::complex<double> velocity, force;
   };
   [[nodiscard]] state at(double place_s, const detail::side_waves& s) const {
     const std::complex<double> sinh = std::sinh(s.gamma * place_s), cosh = std::cosh(s.gamma * place_s);
-    if (loads.empty() && end.rigid()) return {sinh, cosh};
-    const std::complex<double> moved = end.rigid() ? 0.0 : end.admittance({0, s.omega});
-    state out{sinh + s.impedance_ratio * moved * cosh, cosh + s.impedance_ratio * moved * sinh};
+    state out{sinh, cosh};
+    std::complex<double> moved = 0;
+    for (const admittance_mode& m : end_modes) moved += m({0, s.omega});
+    const std::complex<double> lead = moved * (s.impedance_ratio / s.force_factor), bent = moved * s.bent;
+    out.velocity += lead * cosh + bent * sinh;
+    out.force += lead * sinh + bent * cosh;
     for (const auto& [place, g] : detail::returned_by_loads(loads, s, place_s, 1, moved)) {
       out.velocity -= g * std::sinh(s.gamma * (place_s - place)) / s.force_factor;
-      out.force -= g * std::cosh(s.gamma * (place_s - place));
+      out.force -= g * std::cosh(s.gamma * (place_s - place)) / s.force_factor;
     }
     return out;
   }
 };
 
-/// Both sides of a contact on a scene's string.
+/// Both sides of a contact on a scene's string. Modes of the ends count, nothing else of them, as in loaded_motion.hpp.
 [[nodiscard]] inline std::array<string_side, 2> sides_of(const pluck_scene& scene, const std::array<double, 2>& delay_s) {
   auto loads = detail::loads_by_side(scene.scatterers, delay_s);
-  return {string_side{std::move(loads[0]), scene.ends[0]}, string_side{std::move(loads[1]), scene.ends[1]}};
+  return {string_side{std::move(loads[0]), scene.ends[0].modes}, string_side{std::move(loads[1]), scene.ends[1].modes}};
 }
 
 }  // namespace rosin

@@ -4,7 +4,7 @@
 // A contact of some width w holds the string at two places, not at one. With a width assumed the
 // two places follow exactly from the two ends' forces, F_1 and F_2, by what waves do between them:
 //
-//     v_a = F_1 sinh(g a) / Z_w,   v_b = F_2 sinh(g b) / Z_w,   f_a +- f_b = F_1 cosh(g a) +- F_2 cosh(g b) + Z_w (v_a +- v_b) tanh(g d)^(+-1)
+//     v_a = F_1 sinh(g a) / Z_w,   v_b = F_2 sinh(g b) / Z_w,   (f_a +- f_b) / G = F_1 cosh(g a) +- F_2 cosh(g b) + Z_w (v_a +- v_b) tanh(g d)^(+-1)
 //
 // with a = tau_1 - d, b = tau_2 - d, d = w / (2 c), and torsion between them (torsion_pair.hpp). Where a side carries loads or ends on what moves, what
 // stands for its sinh and cosh is in string_side.hpp.
@@ -132,8 +132,8 @@ private:
     for (const std::size_t side : {0U, 1U}) {
       const double own = side == 0 ? a : b, sign = side == 0 ? 1 : -1;
       const auto here = take_.sides[side].at(own, waves);
-      const complex v = here.velocity / Z, c = here.force, sum = c + tanh_d * Z * v;
-      const complex difference = d > 0 ? sign * (c + Z * v * cosh_d * std::conj(sinh_d) / (std::norm(sinh_d) + 1e-12)) : complex(0);
+      const complex v = here.velocity / Z, c = here.force, sum = waves.force_factor * (c + tanh_d * Z * v);
+      const complex difference = d > 0 ? waves.force_factor * sign * (c + Z * v * cosh_d * std::conj(sinh_d) / (std::norm(sinh_d) + 1e-12)) : complex(0);
       const complex fa = 0.5 * (sum + difference), fb = 0.5 * (sum - difference);
       out[side] = (side == 0 ? v : complex(0)) + (rolls.aa + near_field) * fa + rolls.across * fb;
       out[2 + side] = (side == 1 ? v : complex(0)) + (rolls.bb + near_field) * fb + rolls.across * fa;

@@ -52,8 +52,9 @@ inline void ring_along(std::vector<double>& x, double frequency_Hz, double q, do
 /// begin_s: where the take begins, and both clocks show the same.
 inline void disturb(std::array<std::vector<double>, 2>& end_N, const sensor_faults& faults, double step_s, double begin_s = 0) {
   for (std::size_t c = 0; c < 2; ++c) {
-    const auto bend = [&] {
-      for (double& f : end_N[c]) f += faults.quadratic_per_N[c] * f * f;
+    const auto bend = [&, a = faults.quadratic_per_N[c]] {
+      if (a == 0) return;
+      for (double& f : end_N[c]) f += a * f * f;
     };
     if (!faults.rings_first[c]) bend();
     if (faults.resonance_Hz[c] > 0) detail::ring_along(end_N[c], faults.resonance_Hz[c], faults.resonance_q[c], step_s);

@@ -52,6 +52,7 @@ namespace detail {
     if (const double half = width_m / rig.string.length_m / 2; !(width_m >= 0 && half < position && half < 1 - position))
       return std::string{what} + ": wider than the string has room for";
   if (!(std::abs(b.sensors.clock_drift) <= 0.01)) return "clock: 0.01 off at most";
+  if (!(b.coupling > -1 && b.detuning > -1)) return "second plane: coupling and detuning must be above -1";
   return {};
 }
 
@@ -93,7 +94,8 @@ private:
   auto other = rig;
   other.string.fundamental_Hz *= 1 + burden.detuning;
   other.string.tension_N *= std::pow(1 + burden.detuning, 2);
-  const double c = burden.coupling, along_share = 1 / std::sqrt(1 + std::abs(c)), across_share = std::sqrt(std::abs(c)) * along_share;
+  const bool stretches = burden.string.axial_stiffness_N > 0;  // else both planes are as strong as the sensors' share needs them
+  const double c = burden.coupling, along_share = stretches ? 1 / std::sqrt(1 + std::abs(c)) : 1, across_share = stretches ? std::sqrt(std::abs(c)) * along_share : 1;
   auto along_wire = wire, across_wire = wire;
   along_wire.force_N *= along_share, across_wire.force_N *= across_share;
   auto [along, across] = step_planes(rig, along_wire, other, across_wire, burden.string, how.duration_s(), how.limit_Hz, how.step_s);

@@ -126,6 +126,7 @@ TEST_CASE("a sensor that bends before it rings: what it makes of the bend is tak
     CHECK(takes[0].force_N[0] == straight);
     return std::sqrt(sum);
   };
+  CHECK(rosin::sensor_nonlinearity_effect(facts, 1, rosin::bending::before_ringing).id() == "sensor-nonlinearity@far before it rings");  // the key that `simulate --model` looks for
   const double as_it_is = left(rosin::bending::before_ringing), other_way = left(rosin::bending::behind_ringing);
   CHECK(as_it_is < 1e-4);
   CHECK(other_way > 5 * as_it_is);

@@ -59,3 +59,17 @@ TEST_CASE("a fast clock reads later moments too early, counted from where the ta
   CHECK(worst < 1e-6);
   CHECK(x[0] == tone(f));
 }
+
+TEST_CASE("a sensor that rings at twice a tone passes on what it bends before that, and not what it bends behind it") {
+  constexpr double f = 2000, q = 20, curve = 0.1;
+  const auto octave = [&](bool rings_first) {
+    std::array<std::vector<double>, 2> force{tone(f), tone(f)};
+    rosin::sensor_faults faults;
+    faults.quadratic_per_N[0] = curve, faults.resonance_Hz[0] = 2 * f, faults.resonance_q[0] = q, faults.rings_first[0] = rings_first;
+    rosin::disturb(force, faults, step_s);
+    return std::abs(amplitude(force[0], 2 * f));
+  };
+  const double own = 4.0 / 3;  // of the tone, an octave below the resonance
+  CHECK(octave(false) == doctest::Approx(q * curve / 2).epsilon(0.02));
+  CHECK(octave(true) == doctest::Approx(own * own * curve / 2).epsilon(0.02));
+}

@@ -102,14 +102,30 @@ TEST_CASE("a second plane takes its share of a pluck and none of what the wire h
 TEST_CASE("planes of one pitch stretch a string as one plane does, since they have one tension") {
   rosin::rig_burden one, two;
   one.string.axial_stiffness_N = two.string.axial_stiffness_N = 2e4;
-  two.coupling = 0.4;
   const rosin::modal_pluck pluck{.force_N = 1.5, .release_s = 0.004, .duration_s = 0.02};
-  const auto single = rosin::simulate_pluck(rig, one, pluck, settings), both = rosin::simulate_pluck(rig, two, pluck, settings), slack = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
-  REQUIRE((single && both && slack));
+  const auto single = rosin::simulate_pluck(rig, one, pluck, settings), slack = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
+  REQUIRE((single && slack));
   const double stretched = apart(single->force_near_N, slack->force_near_N);
   CHECK(stretched > 0.01);
-  CHECK(apart(both->force_near_N, single->force_near_N) < 0.01 * stretched);  // the planes were stepped one after the other
-  CHECK(apart(both->centre_velocity_m_s, single->centre_velocity_m_s) < 0.01 * apart(single->centre_velocity_m_s, slack->centre_velocity_m_s));
+  for (const double coupling : {0.4, -0.2}) {
+    two.coupling = coupling;
+    const auto both = rosin::simulate_pluck(rig, two, pluck, settings);
+    REQUIRE(both);
+    CHECK(apart(both->force_near_N, single->force_near_N) < 0.01 * stretched);  // the planes were stepped one after the other
+    CHECK(apart(both->centre_velocity_m_s, single->centre_velocity_m_s) < 0.01 * apart(single->centre_velocity_m_s, slack->centre_velocity_m_s));
+  }
+}
+
+TEST_CASE("what a sensor feels of the strain is the same from two planes of one pitch as from one") {
+  rosin::rig_burden one;
+  one.string.sensed_stiffness_N = {4e3, 0};
+  rosin::rig_burden two = one;
+  two.coupling = 0.4;
+  const rosin::modal_pluck pluck{.release_s = 0.004, .duration_s = 0.02};
+  const auto single = rosin::simulate_pluck(rig, one, pluck, settings), both = rosin::simulate_pluck(rig, two, pluck, settings), deaf = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
+  REQUIRE((single && both && deaf));
+  CHECK(apart(single->force_near_N, deaf->force_near_N) > 1e-3);
+  CHECK(apart(both->force_near_N, single->force_near_N) < 1e-9);
 }
 
 TEST_CASE("what cannot be is refused") {
@@ -121,6 +137,8 @@ TEST_CASE("what cannot be is refused") {
   rosin::rig_burden b;
   b.string.loads = {{.position = 1, .mass_kg = 1e-6}};
   says(b, "load");
+  b = {}, b.coupling = -1;
+  says(b, "second plane");
   b = {}, b.string.ends[0].modes = {{500, 0, 10}};
   says(b, "termination");
   b = {}, b.string.ends[1].modes = {{500, 10, -1}};
