@@ -8,6 +8,7 @@
 #include "challenge_score.hpp"
 #include "commands.hpp"
 #include "diagnose_rig.hpp"
+#include "digits.hpp"
 #include "progress.hpp"
 
 #include <chrono>
@@ -39,8 +40,8 @@ struct places {
 
 std::string describe(const options& o) {
   std::string out = "`rosin challenge --seed " + std::to_string(o.seed) + " --count " + std::to_string(o.count) + " --effects " + std::to_string(o.effects);
-  if (o.strength != 1) out += " --strength " + rosin::detail::figure(o.strength);
-  if (o.noise_dB > 0) out += " --noise-db " + rosin::detail::figure(o.noise_dB);
+  if (o.strength != 1) out += " --strength " + in_digits(o.strength);
+  if (o.noise_dB > 0) out += " --noise-db " + in_digits(o.noise_dB);
   if (o.leave_out) out += " --leave-out";
   return out + (o.effect.empty() ? "`" : " --effect " + o.effect + "`");
 }

@@ -3,8 +3,8 @@
 // The takes of a challenge, played and written: three plucks, two strokes, and a rig file that owns up to nothing.
 //
 #include "challenge_rig.hpp"
+#include "digits.hpp"
 
-#include <rosin/acquire/signal_checks.hpp>
 #include <rosin/adapt/audio_sndfile.hpp>
 #include <rosin/friction/elasto_plastic.hpp>
 #include <rosin/report/csv.hpp>
@@ -92,8 +92,6 @@ private:
   double lead_s_;
 };
 
-std::string number(double x, const char* form) { return rosin::detail::figure(x, form); }
-
 rosin::table motion_of(const played& take, const std::string& rig) {
   rosin::table out{{"truth of take " + take.name + ", " + rig}, {}};
   std::vector<double> time_s(take.contact_force_N.size());
@@ -104,23 +102,23 @@ rosin::table motion_of(const played& take, const std::string& rig) {
 
 std::string rig_text(const challenge_rig& r, const std::array<double, 2>& full_scale_N) {
   const auto& d = r.base.declared;
-  std::string out = "schema = 1\ntitle = \"" + r.name + "\"\n\n[string]\nlength_m = " + number(d.string.length_m, "%.5f") + "\ntension_N = " + number(d.string.tension_N, "%.2f") +
-                    "\nfundamental_Hz = " + number(d.string.fundamental_Hz, "%.2f") + "\n";
-  if (r.declares_stiffness) out += "bending_stiffness_Nm2 = " + number(d.string.bending_stiffness_Nm2, "%.3e") + "\n";
-  out += "\n[channels]\nnear = { index = 0, newtons_per_full_scale = " + number(full_scale_N[0], "%.6f") + ", gain_tolerance = 0.05 }\nfar = { index = 1, newtons_per_full_scale = " +
-         number(full_scale_N[1], "%.6f") + ", gain_tolerance = 0.05 }\n\n[contact]\nposition = " + number(d.position, "%.4f") + "\n";
+  std::string out = "schema = 1\ntitle = \"" + r.name + "\"\n\n[string]\nlength_m = " + in_digits(d.string.length_m, "%.5f") + "\ntension_N = " + in_digits(d.string.tension_N, "%.2f") +
+                    "\nfundamental_Hz = " + in_digits(d.string.fundamental_Hz, "%.2f") + "\n";
+  if (r.declares_stiffness) out += "bending_stiffness_Nm2 = " + in_digits(d.string.bending_stiffness_Nm2, "%.3e") + "\n";
+  out += "\n[channels]\nnear = { index = 0, newtons_per_full_scale = " + in_digits(full_scale_N[0], "%.6f") + ", gain_tolerance = 0.05 }\nfar = { index = 1, newtons_per_full_scale = " +
+         in_digits(full_scale_N[1], "%.6f") + ", gain_tolerance = 0.05 }\n\n[contact]\nposition = " + in_digits(d.position, "%.4f") + "\n";
   if (r.declares_torsion)
-    out += "\n[torsion]\nspeed_ratio = " + number(d.torsion.speed_ratio, "%.3f") + "\nimpedance_ratio = " + number(d.torsion.impedance_ratio, "%.3f") + "\nq = " + number(d.torsion.quality, "%.1f") + "\n";
+    out += "\n[torsion]\nspeed_ratio = " + in_digits(d.torsion.speed_ratio, "%.3f") + "\nimpedance_ratio = " + in_digits(d.torsion.impedance_ratio, "%.3f") + "\nq = " + in_digits(d.torsion.quality, "%.1f") + "\n";
   out += std::string{"\n[model]\nphysics = ["} + (r.declares_stiffness ? "\"bending-stiffness\"" : "") + (r.declares_stiffness && r.declares_torsion ? ", " : "") +
          (r.declares_torsion ? "\"torsion\"" : "") + "]\nfriction = \"velocity-curve\"\n";
   for (std::size_t i = 0; i < r.base.plucks.size(); ++i) {
     const std::string name = "pluck-" + std::to_string(i + 1);
-    out += "\n[[take]]\nname = \"" + name + "\"\nkind = \"pluck\"\nfile = \"" + name + ".wav\"\nforce_N = " + number(d.pluck_N[i], "%.3f") + "\nforce_tolerance = 0.03\n";
+    out += "\n[[take]]\nname = \"" + name + "\"\nkind = \"pluck\"\nfile = \"" + name + ".wav\"\nforce_N = " + in_digits(d.pluck_N[i], "%.3f") + "\nforce_tolerance = 0.03\n";
   }
   for (std::size_t i = 0; i < r.base.strokes.size(); ++i) {
     const std::string name = "bow-" + std::to_string(i + 1);
-    out += "\n[[take]]\nname = \"" + name + "\"\nkind = \"bow\"\nfile = \"" + name + ".wav\"\nspeed_m_s = " + number(r.base.strokes[i].speed_m_s, "%.5f") +
-           "\nnormal_force_N = " + number(r.base.strokes[i].normal_force_N, "%.5f") + "\n";
+    out += "\n[[take]]\nname = \"" + name + "\"\nkind = \"bow\"\nfile = \"" + name + ".wav\"\nspeed_m_s = " + in_digits(r.base.strokes[i].speed_m_s, "%.5f") +
+           "\nnormal_force_N = " + in_digits(r.base.strokes[i].normal_force_N, "%.5f") + "\n";
   }
   return out;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "challenge_score.hpp"
 
-#include <rosin/acquire/signal_checks.hpp>
+#include "digits.hpp"
 
 #include <boost/math/distributions/beta.hpp>
 
@@ -13,8 +13,6 @@
 namespace tool {
 
 namespace {
-
-using rosin::detail::figure;
 
 bool same_effect(const std::string& hidden, const json& said) {
   if (said.at("effect") == hidden) return true;
@@ -49,7 +47,7 @@ std::string share(std::size_t right, std::size_t all) {
   if (all == 0) return "-";
   const double k = static_cast<double>(right), n = static_cast<double>(all);
   const double low = right == 0 ? 0 : boost::math::ibeta_inv(k, n - k + 1, 0.025), high = right == all ? 1 : boost::math::ibeta_inv(k + 1, n - k, 0.975);
-  return std::to_string(right) + "/" + std::to_string(all) + " (" + figure(100 * low, "%.0f") + "-" + figure(100 * high, "%.0f") + " %)";
+  return std::to_string(right) + "/" + std::to_string(all) + " (" + in_digits(100 * low, "%.0f") + "-" + in_digits(100 * high, "%.0f") + " %)";
 }
 
 double median(std::vector<double> x) {
@@ -139,8 +137,8 @@ std::string forces_to_markdown(const std::vector<rig_score>& scores) {
     std::vector<double> before, after;
     std::size_t worse = 0;
     for (const auto& [b, a] : strokes) before.push_back(b), after.push_back(a), worse += a > 1.1 * b;
-    out += "| " + hidden + " | " + std::to_string(strokes.size()) + " | " + figure(median(before), "%.2g") + " | " + figure(median(after), "%.2g") + " | " +
-           figure(*std::max_element(after.begin(), after.end()), "%.2g") + " | " + std::to_string(worse) + " |\n";
+    out += "| " + hidden + " | " + std::to_string(strokes.size()) + " | " + in_digits(median(before), "%.2g") + " | " + in_digits(median(after), "%.2g") + " | " +
+           in_digits(*std::max_element(after.begin(), after.end()), "%.2g") + " | " + std::to_string(worse) + " |\n";
   }
   return out;
 }
@@ -157,8 +155,8 @@ std::string to_markdown(const std::vector<rig_score>& scores, const std::string&
     if (s.held_out_over_floor > 0 && s.verdict == "explained") floors.push_back(s.held_out_over_floor);
   }
   std::string out = how + "\n\nNamed right: " + share(right, scores.size()) + ". End, channel and position right where the effect was named: " + share(placed, with_place) +
-                    ". 95 % intervals that cover: " + share(covered, intervals) + ". Held-out residual over the noise floor, median: " + (floors.empty() ? "-" : figure(median(floors))) +
-                    ". Seconds a rig, median: " + figure(median(seconds)) + ".\n\n| hidden | named right | placed right | errors, median | intervals that cover | said instead |\n|---|---|---|---|---|---|\n";
+                    ". 95 % intervals that cover: " + share(covered, intervals) + ". Held-out residual over the noise floor, median: " + (floors.empty() ? "-" : in_digits(median(floors))) +
+                    ". Seconds a rig, median: " + in_digits(median(seconds)) + ".\n\n| hidden | named right | placed right | errors, median | intervals that cover | said instead |\n|---|---|---|---|---|---|\n";
   for (const auto& [hidden, rigs] : by) {
     std::size_t ok = 0, place_ok = 0, places = 0, in = 0, of = 0;
     std::map<std::string, std::vector<double>> errors;
@@ -170,7 +168,7 @@ std::string to_markdown(const std::vector<rig_score>& scores, const std::string&
     }
     std::string wrong, off;
     for (const auto& [name, count] : instead) wrong += (wrong.empty() ? "" : ", ") + (count > 1 ? std::to_string(count) + " x " : std::string{}) + name;
-    for (const auto& [name, e] : errors) off += (off.empty() ? "" : ", ") + name + " " + (name == "position" ? figure(median(e), "%.1e") : figure(100 * median(e), "%.2g") + " %");
+    for (const auto& [name, e] : errors) off += (off.empty() ? "" : ", ") + name + " " + (name == "position" ? in_digits(median(e), "%.1e") : in_digits(100 * median(e), "%.2g") + " %");
     out += "| " + hidden + " | " + share(ok, rigs.size()) + " | " + share(place_ok, places) + " | " + off + " | " + share(in, of) + " | " + wrong + " |\n";
   }
   return out;

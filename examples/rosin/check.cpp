@@ -3,6 +3,7 @@
 // rosin check: what is wrong with the recordings of a rig, before anything is calculated from them.
 //
 #include "commands.hpp"
+#include "digits.hpp"
 #include "progress.hpp"
 #include "rig_input.hpp"
 
@@ -44,17 +45,16 @@ json to_json(const rosin::take_check& take, const rosin::rig& rig) {
 }
 
 void print_text(const rosin::take_check& take, const rosin::rig& rig) {
-  using rosin::detail::figure;
   const auto* declared = rig.find_take(take.take);
-  std::cout << take.take << " (" << name_of(declared->kind) << ", " << declared->file << "): " << figure(take.duration_s) << " s at "
-            << figure(take.sample_rate_Hz, "%.0f") << " Hz";
-  if (take.release_s) std::cout << ", released at " << figure(*take.release_s, "%.5f") << " s";
-  if (take.pitch_Hz) std::cout << ", rings at " << figure(*take.pitch_Hz, "%.2f") << " Hz";
+  std::cout << take.take << " (" << name_of(declared->kind) << ", " << declared->file << "): " << in_digits(take.duration_s) << " s at "
+            << in_digits(take.sample_rate_Hz, "%.0f") << " Hz";
+  if (take.release_s) std::cout << ", released at " << in_digits(*take.release_s, "%.5f") << " s";
+  if (take.pitch_Hz) std::cout << ", rings at " << in_digits(*take.pitch_Hz, "%.2f") << " Hz";
   std::cout << '\n';
   for (const auto& c : take.channels) {
-    std::cout << "  " << c.channel << ": " << figure(c.lowest) << " ... " << figure(c.highest) << " " << c.unit << ", "
-              << figure(100 * c.of_full_scale, "%.0f") << " % of full scale";
-    if (c.noise_rms) std::cout << ", noise " << figure(*c.noise_rms) << " " << c.unit << " rms";
+    std::cout << "  " << c.channel << ": " << in_digits(c.lowest) << " ... " << in_digits(c.highest) << " " << c.unit << ", "
+              << in_digits(100 * c.of_full_scale, "%.0f") << " % of full scale";
+    if (c.noise_rms) std::cout << ", noise " << in_digits(*c.noise_rms) << " " << c.unit << " rms";
     std::cout << '\n';
   }
   for (const auto& f : take.findings) std::cout << "  " << sentence(rig, f) << '\n';

@@ -5,9 +5,9 @@
 //
 #include "commands.hpp"
 #include "compare_columns.hpp"
+#include "digits.hpp"
 #include "provenance.hpp"
 
-#include <rosin/acquire/signal_checks.hpp>
 #include <rosin/report/csv.hpp>
 
 #include <iostream>
@@ -67,12 +67,11 @@ rosin::outcome<std::vector<compared>> compare(const options& given, const rosin:
 }
 
 void print_text(const std::vector<compared>& columns, const rosin::band& window) {
-  using rosin::detail::figure;
-  std::cout << "both through one low-pass, " << figure(window.pass_Hz, "%.0f") << " to " << figure(window.stop_Hz, "%.0f") << " Hz\n";
+  std::cout << "both through one low-pass, " << in_digits(window.pass_Hz, "%.0f") << " to " << in_digits(window.stop_Hz, "%.0f") << " Hz\n";
   for (const auto& c : columns)
-    std::cout << c.name << ": Delta " << figure(c.delta, "%.5f") << "; scale " << figure(c.scale, "%.5f") << ", and after division by it Delta "
-              << figure(c.delta_scaled, "%.5f") << ", error " << figure(c.rms_error, "%.3g") << " rms and " << figure(c.worst, "%.3g") << " at worst, of "
-              << figure(c.rms_truth, "%.3g") << " rms\n";
+    std::cout << c.name << ": Delta " << in_digits(c.delta, "%.5f") << "; scale " << in_digits(c.scale, "%.5f") << ", and after division by it Delta "
+              << in_digits(c.delta_scaled, "%.5f") << ", error " << in_digits(c.rms_error, "%.3g") << " rms and " << in_digits(c.worst, "%.3g") << " at worst, of "
+              << in_digits(c.rms_truth, "%.3g") << " rms\n";
 }
 
 void print_json(const std::vector<compared>& columns, const rosin::band& window, const provenance& from) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "corrected_model.hpp"
 #include "diagnose_parts.hpp"
+#include "digits.hpp"
 
 #include <fstream>
 #include <limits>
@@ -105,15 +106,15 @@ rosin::outcome<processed> process_with_model(const corrected_model& model, const
       drift.relative > 3 * drift.sd && drift.delta_after < drift.delta_before) {
     said.clear();
     strokes = reconstruct_strokes(rig, values, *model.plucks, drift.relative, own, said, take, limits);
-    said.push_back(take + ": its tension is " + rosin::detail::figure(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
+    said.push_back(take + ": its tension is " + in_digits(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
   }
   if (strokes.empty()) return rosin::failure{model.file + ": " + (said.empty() ? take + " could not be reconstructed" : said.back())};
   warnings.insert(warnings.end(), said.begin(), said.end());
   diagnosed_stroke& s = strokes.front();
   if (model.contact_width_m > 0)
     if (const auto edge_Hz = see_as_wide(rig, *model.plucks, model.contact_width_m, s))
-      warnings.push_back(take + ": force of both places of a contact of " + rosin::detail::figure(1e3 * model.contact_width_m, "%.3g") + " mm and their mean velocity, up to " +
-                         rosin::detail::figure(1e-3 * *edge_Hz, "%.3g") + " kHz, where they can be told apart; the two versions part as a point's do");
+      warnings.push_back(take + ": force of both places of a contact of " + in_digits(1e3 * model.contact_width_m, "%.3g") + " mm and their mean velocity, up to " +
+                         in_digits(1e-3 * *edge_Hz, "%.3g") + " kHz, where they can be told apart; the two versions part as a point's do");
   processed out;
   out.used = s.calibration, out.force_N = std::move(s.force_N), out.motion = std::move(s.motion), out.sd = std::move(s.sd);
   out.why_not_periodic = "not sought with --model";

@@ -5,6 +5,7 @@
 #include "calibration_file.hpp"
 #include "commands.hpp"
 #include "diagnose_rig.hpp"
+#include "digits.hpp"
 #include "progress.hpp"
 #include "report_figure.hpp"
 
@@ -22,24 +23,22 @@ struct options {
   double rate_Hz = 128000, noise_N = 3e-4;
 };
 
-std::string figure(double x, const char* form = "%.4g") { return rosin::detail::figure(x, form); }
-
 void print_text(const rig_diagnosis& d) {
   std::cout << d.title << ": " << d.verdict << '\n' << sentence(d) << '\n';
   for (const auto& m : d.missing) {
     std::cout << m.effect << (m.end.empty() ? "" : ", " + m.end + " end") << (m.channel.empty() ? "" : ", channel " + m.channel) << '\n';
-    for (const auto& p : m.parameters) std::cout << "  " << p.name << " = " << figure(p.value, "%.6g") << " +- " << figure(p.sd, "%.2g") << '\n';
+    for (const auto& p : m.parameters) std::cout << "  " << p.name << " = " << in_digits(p.value, "%.6g") << " +- " << in_digits(p.sd, "%.2g") << '\n';
     for (const auto& other : m.indistinguishable_from) std::cout << "  cannot be told from " << other << '\n';
   }
-  std::cout << d.metric << ": " << figure(d.before) << " before";
-  if (d.after) std::cout << ", " << figure(*d.after) << " after";
-  std::cout << ", " << figure(d.noise_floor) << " from noise alone\n";
+  std::cout << d.metric << ": " << in_digits(d.before, "%.4g") << " before";
+  if (d.after) std::cout << ", " << in_digits(*d.after, "%.4g") << " after";
+  std::cout << ", " << in_digits(d.noise_floor, "%.4g") << " from noise alone\n";
   std::size_t shown = 0;
   for (const auto& r : d.ranking) {
     if (++shown > 6) break;
     std::string names;
     for (const auto& e : r.effects) names += (names.empty() ? "" : " + ") + e;
-    std::cout << "  " << (names.empty() ? "as declared" : names) << ": log10 of the evidence " << figure(r.log10_evidence) << '\n';
+    std::cout << "  " << (names.empty() ? "as declared" : names) << ": log10 of the evidence " << in_digits(r.log10_evidence, "%.4g") << '\n';
   }
   for (const auto& line : d.assumed) std::cout << "assumed: " << line << '\n';
 }

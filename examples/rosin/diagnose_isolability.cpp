@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose_rig.hpp"
+#include "digits.hpp"
 #include "pluck_input.hpp"
 #include "rig_ends.hpp"
 
@@ -48,14 +49,13 @@ rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, doubl
 }
 
 std::string isolability_text(const json& j) {
-  using rosin::detail::figure;
-  std::string out = j.at("rig").get<std::string>() + ": what " + figure(1e3 * j.at("seconds").get<double>()) + " ms of its plucks can tell apart\n";
+  std::string out = j.at("rig").get<std::string>() + ": what " + in_digits(1e3 * j.at("seconds").get<double>()) + " ms of its plucks can tell apart\n";
   for (const auto& w : j.at("warnings")) out += "  " + w.get<std::string>() + "\n";
   for (const auto& e : j.at("effects")) {
     out += "  " + e.at("effect").get<std::string>();
     if (e.at("detectable").is_object())
-      out += ": seen from " + e.at("detectable").at("parameter").get<std::string>() + " = " + figure(e.at("detectable").at("value"), "%.2g") + " on (five standard deviations)";
-    out += ", " + figure(100 * e.at("surviving").get<double>(), "%.2g") + " % of it left by the nuisances\n";
+      out += ": seen from " + e.at("detectable").at("parameter").get<std::string>() + " = " + in_digits(e.at("detectable").at("value"), "%.2g") + " on (five standard deviations)";
+    out += ", " + in_digits(100 * e.at("surviving").get<double>(), "%.2g") + " % of it left by the nuisances\n";
   }
   for (const auto& c : j.at("classes")) {
     if (c.size() < 2) continue;

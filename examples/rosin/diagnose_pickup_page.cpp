@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose_pickup_page.hpp"
 
+#include "digits.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,8 +10,6 @@
 namespace tool {
 
 namespace {
-
-std::string text(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
 
 const diagnosed_value* find(const missing_effect& m, const std::string& name) {
   for (const auto& p : m.parameters)
@@ -19,14 +19,14 @@ const diagnosed_value* find(const missing_effect& m, const std::string& name) {
 
 /// "0.021 g", or "0.3 % of the string's mass" where that is all that can be said.
 std::string either(const missing_effect& m, const std::string& si, double factor, const std::string& unit, const std::string& ratio, const std::string& of) {
-  if (const auto* v = find(m, si)) return text(factor * v->value) + " " + unit;
-  if (const auto* v = find(m, ratio)) return text(v->value) + " " + of;
+  if (const auto* v = find(m, si)) return in_digits(factor * v->value) + " " + unit;
+  if (const auto* v = find(m, ratio)) return in_digits(v->value) + " " + of;
   return "?";
 }
 
 std::string value(const missing_effect& m, const std::string& name, double factor = 1, const char* form = "%.3g") {
   const auto* v = find(m, name);
-  return v != nullptr ? text(factor * v->value, form) : "?";
+  return v != nullptr ? in_digits(factor * v->value, form) : "?";
 }
 
 double cents(double f, double against) { return 1200 * std::log2(f / against); }
@@ -53,7 +53,7 @@ figure residual_figure(const pickup_picture& p, const rig_diagnosis& d) {
   if (d.time_s) levels.heavy = {{(*d.time_s)[0], (*d.time_s)[1]}};
   f.panels = {levels};
   f.caption = "Residual of a recording to which nothing but amplitudes, phases and one pitch was fitted.";
-  if (d.time_s) f.caption += " The bar marks where it is largest; over the whole stretch it is " + text(d.residual_over_noise) + " times the noise.";
+  if (d.time_s) f.caption += " The bar marks where it is largest; over the whole stretch it is " + in_digits(d.residual_over_noise) + " times the noise.";
   return f;
 }
 

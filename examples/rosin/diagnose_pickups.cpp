@@ -3,6 +3,7 @@
 // Rigs without force transducers at both ends: what plucks heard by a pickup or a microphone say of physics that was left out.
 //
 #include "diagnose_pickup_page.hpp"
+#include "digits.hpp"
 #include "progress.hpp"
 #include "rig_ends.hpp"
 
@@ -166,15 +167,14 @@ void own_up(const rosin::rig& rig, const rosin::pickup_diagnosis& p, const heard
   d.assumed.emplace_back("of a take that is set aside amplitudes, phases and one pitch for all partials are free; frequencies' ratios, decays, glide and second lines are foretold");
   d.assumed.emplace_back("a place on the string is told up to its mirror image: positions count from the nearer end");
   if (plucks.halves) d.assumed.emplace_back("a single pluck: its first half was fitted, its later half foretold");
-  const auto figure = [](double x) { return rosin::detail::figure(x, "%.3g"); };
-  d.assumed.push_back("with every partial's own frequency and decay instead of any law, as the fitted takes have them, pluck-residual would be " + figure(p.own_poles));
+  d.assumed.push_back("with every partial's own frequency and decay instead of any law, as the fitted takes have them, pluck-residual would be " + in_digits(p.own_poles));
   if (std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::bow; }))
     d.assumed.emplace_back("the strokes were not examined: a single channel does not tell force and velocity at the contact");
   for (std::size_t i = 0; i < p.table.offset.size(); ++i)
     if (std::abs(p.table.offset[i]) > 0.005)
-      d.warnings.push_back(plucks.fitted[p.heard[i]].take + ": pitch " + figure(100 * p.table.offset[i]) + " % off that of the other takes: another tuning or another string");
+      d.warnings.push_back(plucks.fitted[p.heard[i]].take + ": pitch " + in_digits(100 * p.table.offset[i]) + " % off that of the other takes: another tuning or another string");
   const double off = p.law.best.law.fundamental_Hz / rig.string.fundamental_Hz - 1;
-  if (std::abs(off) > 0.02) d.warnings.push_back("pitch: " + figure(100 * off) + " % from fundamental_Hz");
+  if (std::abs(off) > 0.02) d.warnings.push_back("pitch: " + in_digits(100 * off) + " % from fundamental_Hz");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // The page of a diagnosis: a sentence, the picture of the mismatch, the picture after, the parameters, the runners-up, what was not done.
 //
 #include "diagnose_pickup_page.hpp"
+#include "digits.hpp"
 #include "report_page.hpp"
 
 #include <algorithm>
@@ -14,7 +15,6 @@ namespace tool {
 
 namespace {
 
-std::string number(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
 const char* ink(std::size_t c) { return c == 0 ? colour::near : colour::far; }
 std::string end_name(std::size_t c) { return c == 0 ? "near end" : "far end"; }
 
@@ -107,7 +107,7 @@ figure spectrum_figure(const residual_picture& r, const rig_diagnosis& d, bool c
   }
   f.share_axis();
   const double seconds = static_cast<double>(r.before.force_N[0].size()) / r.rate_Hz;
-  f.caption = "Spectrum of what is left over the first " + number(1e3 * seconds, "%.0f") + " ms (Hann windows of four periods), and the level of the noise.";
+  f.caption = "Spectrum of what is left over the first " + in_digits(1e3 * seconds, "%.0f") + " ms (Hann windows of four periods), and the level of the noise.";
   if (!f.panels[0].heavy.empty() || !f.panels[1].heavy.empty()) f.caption += " The bar marks the band that holds most of it where the residual is largest.";
   return f;
 }
@@ -159,9 +159,9 @@ void add_figures(const rig_diagnosis& d, report_page& page) {
   const residual_picture& r = *d.residual;
   const bool told = d.time_s && d.take == r.take, corrected = d.after && told && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) { return r.before.force_N != r.after.force_N; });
   figure before = residual_figure(r, r.before, d);
-  before.caption = "What the declared model leaves of " + r.take + " " + r.stretch + ", both ends, up to " + number(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
-  const std::string where = !told || is_drawn(r, d) ? r.bar : "It is largest later, at " + number(1e3 * (*d.time_s)[0], "%.1f") + " ms in channel " + d.channel + r.bar.substr(r.bar.find(';'));
-  if (told) before.caption += " " + where + " " + number(d.residual_over_noise) + " times the noise.";
+  before.caption = "What the declared model leaves of " + r.take + " " + r.stretch + ", both ends, up to " + in_digits(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
+  const std::string where = !told || is_drawn(r, d) ? r.bar : "It is largest later, at " + in_digits(1e3 * (*d.time_s)[0], "%.1f") + " ms in channel " + d.channel + r.bar.substr(r.bar.find(';'));
+  if (told) before.caption += " " + where + " " + in_digits(d.residual_over_noise) + " times the noise.";
   else before.caption += " It is within the noise: the plucks show no mismatch.";
   page.figures.push_back(before);
   if (corrected) {
@@ -180,25 +180,25 @@ std::string list_of(const std::vector<std::string>& names, const char* none) {
 
 /// Two digits more than the standard deviation leaves certain, and no row of zeros.
 std::string with_interval(const diagnosed_value& p) {
-  if (!(std::isfinite(p.sd) && p.sd > 0)) return number(p.value, "%.6g");
+  if (!(std::isfinite(p.sd) && p.sd > 0)) return in_digits(p.value, "%.6g");
   const double certain = std::ceil(std::log10(std::max(1e-300, std::abs(p.value)) / p.sd));
   const std::string form = "%." + std::to_string(static_cast<int>(std::clamp(certain, 0.0, 10.0)) + 2) + "g";
-  const auto text = [&](double x) { return number(x, form.c_str()); };
+  const auto text = [&](double x) { return in_digits(x, form.c_str()); };
   return text(p.value) + "   (95 %: " + text(p.value - 1.96 * p.sd) + " to " + text(p.value + 1.96 * p.sd) + ")";
 }
 
 void add_fit(const rig_diagnosis& d, report_page& page) {
   page.result.emplace_back("verdict", d.verdict);
   const std::string where = d.metric == "pluck-residual" ? " of " + list_of(d.held_out, "the fitted plucks") : std::string{};
-  page.result.emplace_back(d.metric + where + ", as declared", number(100 * d.before) + " %");
-  if (d.after) page.result.emplace_back(d.metric + where + ", corrected", number(100 * *d.after) + " %");
-  if (d.noise_floor > 0) page.result.emplace_back("the same from noise alone", number(100 * d.noise_floor) + " %");
+  page.result.emplace_back(d.metric + where + ", as declared", in_digits(100 * d.before) + " %");
+  if (d.after) page.result.emplace_back(d.metric + where + ", corrected", in_digits(100 * *d.after) + " %");
+  if (d.noise_floor > 0) page.result.emplace_back("the same from noise alone", in_digits(100 * d.noise_floor) + " %");
 }
 
 void add_missing(const rig_diagnosis& d, report_page& page) {
   for (const auto& m : d.missing) {
     const std::string place = !m.end.empty() ? ", " + m.end + " end" : !m.channel.empty() ? ", channel " + m.channel : "";
-    page.result.emplace_back("missing: " + m.effect + place, m.probability > 0.9999 ? "probability above 0.9999" : "probability " + number(m.probability, "%.4g"));
+    page.result.emplace_back("missing: " + m.effect + place, m.probability > 0.9999 ? "probability above 0.9999" : "probability " + in_digits(m.probability, "%.4g"));
     for (const auto& p : m.parameters) page.result.emplace_back("    " + p.name, with_interval(p));
     if (!m.indistinguishable_from.empty()) page.result.emplace_back("    cannot be told here from", list_of(m.indistinguishable_from, ""));
   }
@@ -210,7 +210,7 @@ void add_ranking(const rig_diagnosis& d, report_page& page) {
     if (++shown > 8) break;
     std::string names;
     for (const auto& e : r.effects) names += (names.empty() ? "" : " + ") + e;
-    page.result.emplace_back((shown == 1 ? "likeliest: " : "runner-up: ") + (names.empty() ? "as declared" : names), "log10 of the evidence " + number(r.log10_evidence, "%.4g"));
+    page.result.emplace_back((shown == 1 ? "likeliest: " : "runner-up: ") + (names.empty() ? "as declared" : names), "log10 of the evidence " + in_digits(r.log10_evidence, "%.4g"));
   }
   if (d.ranking.size() > shown) page.notes.push_back(std::to_string(d.ranking.size()) + " models were tried; the likeliest are in the table, all of them in the JSON file.");
   if (!d.pickup) page.notes.emplace_back("Effects of the strokes are judged on the strokes, the others on the plucks: evidence compares exactly only within one kind.");

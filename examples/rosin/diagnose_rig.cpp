@@ -3,6 +3,7 @@
 // Plucks first: what do they say of string, ends, wire and sensors? Then the strokes, reconstructed with that: tension and contact.
 //
 #include "diagnose_parts.hpp"
+#include "digits.hpp"
 #include "rig_ends.hpp"
 
 namespace tool {
@@ -68,7 +69,7 @@ void add_place(const rosin::acting_place& place, rig_diagnosis& d) {
   switch (place.on) {
     case rosin::acting::on_string:
       d.position = place.position;
-      d.acts = "on the string at " + rosin::detail::figure(place.position, "%.4f") + " +- " + rosin::detail::figure(2 * place.sd, "%.1g") + " of its length";
+      d.acts = "on the string at " + in_digits(place.position, "%.4f") + " +- " + in_digits(2 * place.sd, "%.1g") + " of its length";
       break;
     case rosin::acting::near_end: d.position = 0, d.acts = "at the near end"; break;
     case rosin::acting::far_end: d.position = 1, d.acts = "at the far end"; break;
@@ -116,7 +117,7 @@ void add_drift(const rosin::tension_drift& t, const std::vector<diagnosed_stroke
   m.effect = "tension-drift";
   m.probability = 0.999;
   m.parameters = {{"relative", t.relative, std::hypot(t.sd, plain_string ? drift_fault : loaded_drift_fault)}};
-  m.statement = "The tension changed by " + rosin::detail::figure(100 * t.relative, "%+.3g") + " % between the plucks and the strokes.";
+  m.statement = "The tension changed by " + in_digits(100 * t.relative, "%+.3g") + " % between the plucks and the strokes.";
   d.missing.push_back(m);
   // Of the force's two versions a few hundred samples a take are independent: ln L rises by n ln(before / after).
   const double gain = 500 * std::log(t.delta_before / std::max(1e-6, t.delta_after)) / std::log(10.0);
@@ -182,7 +183,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     const rosin::tension_drift drift = drift_of(strokes, p);
     const double rise = drifted(drift) && knows("tension-drift") ? drift.relative : 0;
     if (rise != 0) {
-      if (stretched_by_motion(drift, p, values)) d.assumed.push_back("the strokes' tension is " + rosin::detail::figure(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
+      if (stretched_by_motion(drift, p, values)) d.assumed.push_back("the strokes' tension is " + in_digits(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
       else add_drift(drift, strokes, plain_string, d);
       strokes = reconstruct_strokes(rig, values, p, rise, from, d.warnings);
     }

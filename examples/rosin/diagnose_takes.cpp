@@ -3,6 +3,7 @@
 // What is wrong with single takes: samples that were lost, a pluck that contradicts the others, one that was made elsewhere.
 //
 #include "diagnose_parts.hpp"
+#include "digits.hpp"
 
 namespace tool {
 
@@ -26,8 +27,8 @@ missing_effect lost(const std::string& take, const std::string& channel, double 
   missing_effect m;
   m.effect = "dropouts", m.channel = channel;
   m.parameters = {{"samples", samples, 0}, {"time_s", time_s, time_sd_s}};
-  m.statement = take + (channel.empty() ? "" : ", channel " + channel) + ": " + rosin::detail::figure(samples, "%.0f") + " samples were lost, from " +
-                rosin::detail::figure(time_s, "%.4f") + " s on.";
+  m.statement = take + (channel.empty() ? "" : ", channel " + channel) + ": " + in_digits(samples, "%.0f") + " samples were lost, from " +
+                in_digits(time_s, "%.4f") + " s on.";
   return m;
 }
 
@@ -35,8 +36,8 @@ missing_effect made_at(const std::string& take, double position, double sd, doub
   missing_effect m;
   m.effect = "pluck-position", m.position = position;
   m.parameters = {{"position", position, sd}};
-  m.statement = (take.empty() ? std::string{"The string"} : take + ": the string") + " was plucked at " + rosin::detail::figure(position, "%.4f") + " of its length, not at " +
-                rosin::detail::figure(declared, "%.4f") + ".";
+  m.statement = (take.empty() ? std::string{"The string"} : take + ": the string") + " was plucked at " + in_digits(position, "%.4f") + " of its length, not at " +
+                in_digits(declared, "%.4f") + ".";
   return m;
 }
 
@@ -57,15 +58,14 @@ void add_cause(missing_effect m, rig_diagnosis& d) {
 }
 
 std::string contradiction(const rosin::odd_pluck& odd) {
-  const auto figure = [](double x, const char* form) { return rosin::detail::figure(x, form); };
   const std::string out = odd.take.name + " contradicts the other plucks: ";
-  if (odd.lost) return out + figure(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
+  if (odd.lost) return out + in_digits(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
   const double others_Hz = odd.others.best.value[rosin::pluck_layout::fundamental], apart = odd.own_fundamental_Hz / others_Hz - 1;
   const std::string strongest = odd.strongest ? "; it is the strongest: something that only large motion meets?" : "";
   if (odd.moved) return out + "it was made elsewhere";
   if (odd.own_fundamental_Hz > 0 && std::abs(apart) > 1e-5)
-    return out + "by itself it rings at " + figure(odd.own_fundamental_Hz, "%.6g") + " Hz, the others at " + figure(others_Hz, "%.6g") + " Hz; another tuning or another string?" + strongest;
-  return out + "off from " + figure(odd.time_s[0], "%.4f") + " s on" + strongest;
+    return out + "by itself it rings at " + in_digits(odd.own_fundamental_Hz, "%.6g") + " Hz, the others at " + in_digits(others_Hz, "%.6g") + " Hz; another tuning or another string?" + strongest;
+  return out + "off from " + in_digits(odd.time_s[0], "%.4f") + " s on" + strongest;
 }
 
 }  // namespace

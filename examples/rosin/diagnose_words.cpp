@@ -3,6 +3,7 @@
 // What was found, in the names and units of the format "diagnosis", and as sentences.
 //
 #include "diagnose_rig.hpp"
+#include "digits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,6 @@
 namespace tool {
 
 namespace {
-
-std::string figure(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
 
 /// Relative errors that no recording tells, since they belong to the rig's nominal values.
 struct nominal_errors {
@@ -31,7 +30,7 @@ nominal_errors errors_of(const rosin::rig_values& v) {
 
 std::string value_of(const missing_effect& m, const std::string& name, double factor = 1, const char* form = "%.3g") {
   for (const auto& p : m.parameters)
-    if (p.name == name) return figure(factor * p.value, form);
+    if (p.name == name) return in_digits(factor * p.value, form);
   return "?";
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fit_pickup_rig.hpp"
+#include "digits.hpp"
 #include "progress.hpp"
 
 #include <algorithm>
@@ -114,7 +115,7 @@ std::vector<calibration_row> rows_of(const pickup_result& r) {
   std::vector<calibration_row> rows;
   const std::string group = "take " + r.take + ", channel " + r.channel;
   const auto add = [&](const std::string& name, double value, double sd, const std::string& unit, double scale = 1) {
-    rows.push_back({group, name, unit, rounded(scale * value, scale * sd), rosin::detail::figure(scale * sd, "%.2g"), ""});
+    rows.push_back({group, name, unit, rounded(scale * value, scale * sd), in_digits(scale * sd, "%.2g"), ""});
   };
   const auto derived = [&](const std::string& name, const std::optional<measured_value>& m, const std::string& unit, double scale = 1) {
     if (m) add(name, m->value, m->sd, unit, scale);
@@ -130,7 +131,7 @@ std::vector<calibration_row> rows_of(const pickup_result& r) {
   for (const double at : {1.0, 3.0, 10.0}) {
     const double hz = at * f.fundamental_Hz;
     if (f.partials.empty() || hz > f.partials.back().frequency_Hz) continue;
-    add("1/Q at " + rosin::detail::figure(hz, "%.0f") + " Hz", f.loss.law.inverse_q(hz), f.loss.inverse_q_sd(hz), "1e-6", 1e6);
+    add("1/Q at " + in_digits(hz, "%.0f") + " Hz", f.loss.law.inverse_q(hz), f.loss.inverse_q_sd(hz), "1e-6", 1e6);
   }
   rows.push_back({group, "partials found", "", std::to_string(f.partials.size()), "", ""});
   return rows;

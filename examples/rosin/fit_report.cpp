@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "fit_report.hpp"
 
+#include "digits.hpp"
+
 namespace tool {
 
 namespace {
-
-std::string number(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
 
 /// x (in `scale` units) and y between two samples.
 curve piece(const std::string& name, const std::vector<double>& y, std::size_t begin, std::size_t end, double rate_Hz, double zero_s, const char* ink,
@@ -42,10 +42,10 @@ figure pluck_figure(const pluck_prediction& p, double fundamental_Hz, bool held_
   rest.curves.push_back(piece("far", difference(p.recorded_N[1], p.model_N[1]), begin, end, p.rate_Hz, p.release_s, colour::far, 1));
   f.panels.push_back(rest);
   f.share_axis();
-  f.caption = "Pluck " + p.name + ", released at " + number(1e3 * p.release_s, "%.3f") + " ms with " + number(p.strength_N, "%.3f") +
+  f.caption = "Pluck " + p.name + ", released at " + in_digits(1e3 * p.release_s, "%.3f") + " ms with " + in_digits(p.strength_N, "%.3f") +
               " N: forces on the terminations (solid) and the stiff string's (dashed), " + model + ", both up to " +
-              number(1e-3 * p.limits.stop_Hz, "%.0f") + " kHz. Over all of the take " + (held_out ? "(only release, strength and offset free) " : "") +
-              "the residual is " + number(100 * p.residual_ratio, "%.2g") + " % of the signal.";
+              in_digits(1e-3 * p.limits.stop_Hz, "%.0f") + " kHz. Over all of the take " + (held_out ? "(only release, strength and offset free) " : "") +
+              "the residual is " + in_digits(100 * p.residual_ratio, "%.2g") + " % of the signal.";
   return f;
 }
 
@@ -88,8 +88,8 @@ std::optional<rosin::failure> write_fit_report(const std::string& path, bool for
   page.title = c.title + ": calibration";
   const double f0 = c.fit.value[rosin::pluck_layout::fundamental];
   const double worst = *std::max_element(c.fit.residual_ratio.begin(), c.fit.residual_ratio.end());
-  page.summary = set_of(c).from + ": the string rings at " + number(c.fit.string().partial_Hz(1), "%.2f") + " Hz, the contact lies at " +
-                 number(c.at.front().position, "%.4f") + " of its length, and the model leaves " + number(100 * worst, "%.2g") +
+  page.summary = set_of(c).from + ": the string rings at " + in_digits(c.fit.string().partial_Hz(1), "%.2f") + " Hz, the contact lies at " +
+                 in_digits(c.at.front().position, "%.4f") + " of its length, and the model leaves " + in_digits(100 * worst, "%.2g") +
                  " % of the worst pluck unexplained" + (c.fit.misfit < 2 ? ", which is noise." : ", more than noise alone.");
   page.warnings = c.warnings;
   page.assumed = c.assumed;

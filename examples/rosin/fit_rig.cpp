@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fit_rig.hpp"
+#include "digits.hpp"
 #include "pluck_input.hpp"
 
 namespace tool {
@@ -7,8 +8,6 @@ namespace tool {
 namespace {
 
 using layout = rosin::pluck_layout;
-
-std::string figure(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
 
 void derive_units(const rosin::rig& rig, rig_calibration& c) {
   const auto& v = c.values;
@@ -57,23 +56,23 @@ void judge(rig_calibration& c) {
   for (const auto& name : c.fit.unidentified) c.warnings.push_back("these plucks cannot tell " + name);
   const double worst = *std::max_element(c.fit.residual_ratio.begin(), c.fit.residual_ratio.end());
   if (c.fit.misfit > 4)
-    c.warnings.push_back("the plucks hold more than the model explains (" + figure(c.fit.misfit, "%.0f") +
-                         " times the noise's power at the partials; residual " + figure(100 * worst, "%.2g") +
+    c.warnings.push_back("the plucks hold more than the model explains (" + in_digits(c.fit.misfit, "%.0f") +
+                         " times the noise's power at the partials; residual " + in_digits(100 * worst, "%.2g") +
                          " % of the signal): standard deviations are widened accordingly");
   if (c.fit.horizon_periods < 1e6)
-    c.warnings.push_back("the model holds for the first " + figure(c.fit.horizon_periods, "%.0f") + " periods only: the rest was not used");
+    c.warnings.push_back("the model holds for the first " + in_digits(c.fit.horizon_periods, "%.0f") + " periods only: the rest was not used");
   const auto& L = c.fit.layout;
   for (std::size_t t = 0; t < c.takes.size(); ++t) {
     const double off = c.fit.value[L.at(t, layout::strength)] - std::log(c.takes[t].strength_N), sd = c.takes[t].strength_tolerance / 2;
     if (std::abs(off) > 3 * sd)
-      c.warnings.push_back(c.takes[t].name + ": its strength is " + figure(100 * (std::exp(off) - 1), "%+.1f") + " % off the declared force, " +
-                           figure(std::abs(off) / sd, "%.1f") + " standard deviations");
+      c.warnings.push_back(c.takes[t].name + ": its strength is " + in_digits(100 * (std::exp(off) - 1), "%+.1f") + " % off the declared force, " +
+                           in_digits(std::abs(off) / sd, "%.1f") + " standard deviations");
   }
   for (int channel = 0; channel < 2; ++channel) {
     const double off = c.fit.value[layout::gain_near + channel], sd = c.fit.sd[layout::gain_near + channel];
     if (std::abs(off) > 0.15)
-      c.warnings.push_back(std::string("the gain of channel ") + (channel == 0 ? "near" : "far") + " is " + figure(100 * (std::exp(off) - 1), "%+.1f") +
-                           " % off its nominal value (+- " + figure(100 * sd, "%.2g") + " %)");
+      c.warnings.push_back(std::string("the gain of channel ") + (channel == 0 ? "near" : "far") + " is " + in_digits(100 * (std::exp(off) - 1), "%+.1f") +
+                           " % off its nominal value (+- " + in_digits(100 * sd, "%.2g") + " %)");
   }
 }
 
@@ -116,7 +115,7 @@ rosin::outcome<rosin::pluck_fit_result> fit_on_moving_ends(const rosin::rig& rig
     c.ends.with_waveform.emplace_back(rosin::waveform_jacobian(found->plucks, declared) * found->covariance.topRightCorner(n, m));
   for (const auto& mode : c.ends.modes)
     if (mode.end_uncertain)
-      c.warnings.push_back("the plucks cannot tell at which end the resonance at " + figure(mode.mode.frequency_Hz, "%.0f") + " Hz sits; it is taken to be at " + (mode.end == 0 ? "near" : "far"));
+      c.warnings.push_back("the plucks cannot tell at which end the resonance at " + in_digits(mode.mode.frequency_Hz, "%.0f") + " Hz sits; it is taken to be at " + (mode.end == 0 ? "near" : "far"));
   return std::move(found->plucks);
 }
 

@@ -3,6 +3,7 @@
 // A calibration as rows of a table: value, random and systematic standard deviation, each with digits that mean something.
 //
 #include "calibration_file.hpp"
+#include "digits.hpp"
 
 namespace tool {
 
@@ -16,16 +17,14 @@ std::string printed(double x, int decimals) {
   return text.data();
 }
 
-std::string short_number(double x) { return rosin::detail::figure(x, "%.2g"); }
-
 struct table_of_rows {
   std::vector<calibration_row> rows;
   std::string group;
 
   /// scale: from SI to the unit shown.
   void add(const std::string& name, const doubtful& d, const std::string& unit, double scale = 1) {
-    rows.push_back({group, name, unit, rounded(scale * d.value, scale * std::max(d.sd, d.systematic_sd)), d.sd > 0 ? short_number(scale * d.sd) : "",
-                    d.systematic_sd > 0 ? short_number(scale * d.systematic_sd) : ""});
+    rows.push_back({group, name, unit, rounded(scale * d.value, scale * std::max(d.sd, d.systematic_sd)), d.sd > 0 ? in_digits(scale * d.sd, "%.2g") : "",
+                    d.systematic_sd > 0 ? in_digits(scale * d.systematic_sd, "%.2g") : ""});
   }
   void text(const std::string& name, const std::string& value, const std::string& unit = "") { rows.push_back({group, name, unit, value, "", ""}); }
 };
@@ -46,7 +45,7 @@ void string_rows(table_of_rows& t, const rig_calibration& c) {
 
 void position_rows(table_of_rows& t, const rig_calibration& c) {
   for (std::size_t i = 0; i < c.at.size(); ++i) {
-    t.group = "contact declared at " + rosin::detail::figure(c.declared[i], "%.6g");
+    t.group = "contact declared at " + in_digits(c.declared[i], "%.6g");
     const auto& at = c.at[i];
     const double L = c.values.length_m ? c.values.length_m->value : 0;
     const double sd = c.fit.sd[layout::first_position + static_cast<Eigen::Index>(i)];
@@ -86,9 +85,9 @@ void channel_rows(table_of_rows& t, const rig_calibration& c) {
   t.add("gain near / gain far", {ratio, ratio * ratio_sd, 0}, "");
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string name = i == 0 ? "near" : "far";
-    t.text("noise " + name + ", rms to half the sampling rate", rosin::detail::figure(1e3 * c.fit.noise_N[i], "%.3f"), "mN");
+    t.text("noise " + name + ", rms to half the sampling rate", in_digits(1e3 * c.fit.noise_N[i], "%.3f"), "mN");
     if (c.ac_coupled_Hz[i] == 0) t.add("offset " + name, c.offset_N[i], "mN", 1e3);
-    else t.text("high-pass " + name + " (declared)", rosin::detail::figure(c.ac_coupled_Hz[i]), "Hz");
+    else t.text("high-pass " + name + " (declared)", in_digits(c.ac_coupled_Hz[i]), "Hz");
   }
 }
 
@@ -98,21 +97,21 @@ void take_rows(table_of_rows& t, const rig_calibration& c) {
     t.group = "take " + c.takes[i].name;
     t.add("release", {c.fit.value[L.at(i, layout::release)], c.fit.sd[L.at(i, layout::release)], 0}, "ms", 1e3);
     const double force = std::exp(c.fit.value[L.at(i, layout::strength)]);
-    t.add("force (declared " + short_number(c.takes[i].strength_N) + " N)", {force, 0, force * c.fit.sd[L.at(i, layout::strength)]}, "N");
-    t.text("residual / signal", rosin::detail::figure(100 * c.fit.residual_ratio[i], "%.3g"), "%");
+    t.add("force (declared " + in_digits(c.takes[i].strength_N, "%.2g") + " N)", {force, 0, force * c.fit.sd[L.at(i, layout::strength)]}, "N");
+    t.text("residual / signal", in_digits(100 * c.fit.residual_ratio[i], "%.3g"), "%");
   }
   for (const auto& p : c.predicted) {
     t.group = "take " + p.name + ", held out: predicted";
-    t.text("release", rosin::detail::figure(1e3 * p.release_s, "%.5f"), "ms");
-    t.text("force", rosin::detail::figure(p.strength_N, "%.4f"), "N");
-    t.text("residual / signal", rosin::detail::figure(100 * p.residual_ratio, "%.3g"), "%");
+    t.text("release", in_digits(1e3 * p.release_s, "%.5f"), "ms");
+    t.text("force", in_digits(p.strength_N, "%.4f"), "N");
+    t.text("residual / signal", in_digits(100 * p.residual_ratio, "%.3g"), "%");
   }
 }
 
 }  // namespace
 
 std::string rounded(double value, double sd) {
-  if (!(sd > 0) || !std::isfinite(sd)) return rosin::detail::figure(value, "%.6g");
+  if (!(sd > 0) || !std::isfinite(sd)) return in_digits(value, "%.6g");
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(sd))), 0, 12);
   return printed(value, decimals);
 }
@@ -125,7 +124,7 @@ std::vector<calibration_row> rows_of(const rig_calibration& c) {
   channel_rows(t, c);
   take_rows(t, c);
   t.group = "fit";
-  t.text("power at the partials / what noise explains", rosin::detail::figure(c.fit.misfit, "%.3g"));
+  t.text("power at the partials / what noise explains", in_digits(c.fit.misfit, "%.3g"));
   return t.rows;
 }
 

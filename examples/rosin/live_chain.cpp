@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "live_chain.hpp"
 
+#include "digits.hpp"
+
 #include <rosin/hardware/csv_sink.hpp>
 #include <rosin/hardware/take_file.hpp>
 #include <rosin/reconstruct/passage_design.hpp>
@@ -11,7 +13,6 @@ namespace tool {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const std::vector<std::string> columns{"force_N", "velocity_m_s", "force_near_N", "force_far_N", "velocity_near_m_s", "velocity_far_m_s", "slips"};
 
 std::string figure(double x, const char* form = "%.4g") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pluck_input.hpp"
+#include "digits.hpp"
 #include "progress.hpp"
 
 namespace tool {
@@ -27,8 +28,8 @@ void keep_one_rate(rig_plucks& out) {
   const double rate = out.takes.front().rate_Hz;
   std::erase_if(out.takes, [&](const rosin::pluck_take& t) {
     if (t.rate_Hz == rate) return false;
-    out.warnings.push_back(t.name + ": left out: recorded at " + rosin::detail::figure(t.rate_Hz, "%.0f") + " Hz, the first pluck at " +
-                           rosin::detail::figure(rate, "%.0f") + " Hz");
+    out.warnings.push_back(t.name + ": left out: recorded at " + in_digits(t.rate_Hz, "%.0f") + " Hz, the first pluck at " +
+                           in_digits(rate, "%.0f") + " Hz");
     return out.incomplete = true;
   });
 }

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "reconstruct_channels.hpp"
 
+#include "digits.hpp"
+
 #include <rosin/condition/overlap_save.hpp>
 
 namespace tool {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::string figure(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
 
 /// Mean over the known samples.
 double mean_of(const std::vector<double>& x, rosin::sample_range known) {
@@ -95,7 +93,7 @@ void add_rod_and_normal_force(const rosin::rig&, const rosin::take& take, const 
   }
   const auto differs = [&](const std::string& what, double measured, const std::optional<double>& declared) {
     if (declared && std::abs(measured - *declared) > 0.05 * *declared)
-      r.warnings.push_back(what + " is " + figure(measured) + " in the mean, declared as " + figure(*declared));
+      r.warnings.push_back(what + " is " + in_digits(measured) + " in the mean, declared as " + in_digits(*declared));
   };
   if (r.rod_from.starts_with("channel")) differs("the sled's speed", mean_of(r.rod_m_s, r.known), take.speed_m_s);
   if (r.normal_from.starts_with("channel")) differs("the normal force", *r.normal_force_N, take.normal_force_N);
@@ -106,14 +104,14 @@ void add_comparisons(const rosin::rig& rig, const rosin::take& take, const check
   for (const auto& s : read.signals.signals) {
     if (s.sensor.quantity != rosin::quantity::string_velocity) continue;
     if (s.sensor.position && std::abs(*s.sensor.position - contact) > 0.02) {
-      r.warnings.push_back("channel " + s.sensor.name + " measures at " + figure(*s.sensor.position) + ", the contact is at " + figure(contact) + ": not compared");
+      r.warnings.push_back("channel " + s.sensor.name + " measures at " + in_digits(*s.sensor.position) + ", the contact is at " + in_digits(contact) + ": not compared");
       continue;
     }
     const auto limited = band_limited(s.values, r);
     const auto one = compare(s.sensor.name, "velocity at the contact", limited, r.velocity_m_s);
     r.comparisons.push_back(one);
     if (std::abs(one.correlation) < 0.9)
-      r.warnings.push_back("channel " + s.sensor.name + " agrees badly with the reconstructed velocity (correlation " + figure(one.correlation) + ")");
+      r.warnings.push_back("channel " + s.sensor.name + " agrees badly with the reconstructed velocity (correlation " + in_digits(one.correlation) + ")");
     if (one.scale == 0 || !r.magnet_m_s.empty()) continue;
     r.magnet_m_s = limited;
     for (double& v : r.magnet_m_s) v /= one.scale;

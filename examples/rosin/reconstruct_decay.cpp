@@ -2,6 +2,7 @@
 //
 // A take that ends with the bow lifted: pitch and loss of the string from its free decay, beside those of the plucks.
 //
+#include "digits.hpp"
 #include "reconstruct_take.hpp"
 
 #include <numbers>
@@ -9,8 +10,6 @@
 namespace tool {
 
 namespace {
-
-std::string in_digits(double x, const char* form) { return rosin::detail::figure(x, form); }
 
 struct pitch_difference {
   double cents = 0, sd = 0;

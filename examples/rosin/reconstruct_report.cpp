@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "reconstruct_report.hpp"
+#include "digits.hpp"
 #include "reconstruct_slips.hpp"
 
 namespace tool {
 
 namespace {
 
-std::string number(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
-
 /// A stretch of the take and what its time axis says.
 struct window {
   std::size_t begin = 0, end = 0;
   double rate_Hz = 1, zero_s = 0;
   [[nodiscard]] double ms(std::size_t i) const { return 1e3 * (static_cast<double>(i) / rate_Hz - zero_s); }
-  [[nodiscard]] std::string label() const { return zero_s > 0 ? "time after " + number(1e3 * zero_s, "%.2f") + " ms / ms" : "time / ms"; }
+  [[nodiscard]] std::string label() const { return zero_s > 0 ? "time after " + in_digits(1e3 * zero_s, "%.2f") + " ms / ms" : "time / ms"; }
   [[nodiscard]] std::pair<double, double> range() const { return {ms(begin), ms(end)}; }
 };
 
@@ -76,9 +75,9 @@ figure steady_figure(const take_reconstruction& r, const window& w) {
                        {curve_of("near", r.result.force_N[0], w, colour::near), curve_of("far", r.result.force_N[1], w, colour::far)}),
               velocity_panel("(b)", r, w), force_panel("(c)", r, w)};
   f.share_axis();
-  f.caption = "Four periods where the motion repeats best, from " + number(r.time_s(w.begin), "%.4f") + " s on: (a) what was recorded, gains taken out; (b) and (c) both " +
-              "versions, up to " + number(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz, Delta " + number(r.delta_velocity, "%.4f") + " and " +
-              number(r.delta_force, "%.4f") + " over the whole take." + slips_sentence(r);
+  f.caption = "Four periods where the motion repeats best, from " + in_digits(r.time_s(w.begin), "%.4f") + " s on: (a) what was recorded, gains taken out; (b) and (c) both " +
+              "versions, up to " + in_digits(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz, Delta " + in_digits(r.delta_velocity, "%.4f") + " and " +
+              in_digits(r.delta_force, "%.4f") + " over the whole take." + slips_sentence(r);
   if (r.ac_coupled) f.caption += " AC coupled sensors: the force's mean is unknown.";
   return f;
 }
@@ -100,7 +99,7 @@ figure plane_figure(const take_reconstruction& r, const window& w) {
   }
   std::string caption = "The same four periods in the plane of velocity and force (the string's centre; torsion of the surface is not in it).";
   if (!r.rod_m_s.empty()) caption += " The string sticks along the dotted line of the rod's speed and slips to the left of it.";
-  if (r.normal_force_N && !r.ac_coupled) caption += " Divided by the normal force of " + number(*r.normal_force_N) + " N (" + r.normal_from + ") the force is the friction coefficient.";
+  if (r.normal_force_N && !r.ac_coupled) caption += " Divided by the normal force of " + in_digits(*r.normal_force_N) + " N (" + r.normal_from + ") the force is the friction coefficient.";
   return {caption, {p}, 680};
 }
 
@@ -146,8 +145,8 @@ std::optional<figure> domains_figure(const take_reconstruction& r) {
   out.panels = {panel_of("(a) velocity", "velocity / (m/s)", w, {curve_of("time domain", v, w, colour::near, 1.8), periodic_curve(p.velocity_near_m_s, p.velocity_far_m_s, r, w)}),
                 panel_of("(b) force", "force / N", w, {curve_of("time domain", f, w, colour::near, 1.8), periodic_curve(p.force_near_N, p.force_far_N, r, w)})};
   out.share_axis();
-  out.caption = "Time domain against frequency domain (seven periods averaged as a Fourier series, two of them shown): Delta of the force " + number(*r.domains_differ, "%.4f") +
-                "; the part of the take that does not repeat there is " + number(100 * p.source.remainder, "%.2g") + " %.";
+  out.caption = "Time domain against frequency domain (seven periods averaged as a Fourier series, two of them shown): Delta of the force " + in_digits(*r.domains_differ, "%.4f") +
+                "; the part of the take that does not repeat there is " + in_digits(100 * p.source.remainder, "%.2g") + " %.";
   return out;
 }
 
@@ -165,8 +164,8 @@ std::optional<figure> magnet_figure(const take_reconstruction& r, const window& 
   const auto& c = r.comparisons.front();
   panel p = panel_of("velocity at the contact", "velocity / (m/s)", w,
                      {curve_of("reconstructed", r.velocity_m_s, w, colour::near, 1.8), curve_of("channel " + c.channel + ", scaled", r.magnet_m_s, w, colour::model, 1.1, 2)});
-  return figure{"The reconstructed velocity against a sensor at the contact, in the same band, after one scale factor: Delta " + number(c.delta, "%.4f") + ", correlation " +
-                    number(c.correlation, "%.5f") + ".", {p}, 920};
+  return figure{"The reconstructed velocity against a sensor at the contact, in the same band, after one scale factor: Delta " + in_digits(c.delta, "%.4f") + ", correlation " +
+                    in_digits(c.correlation, "%.5f") + ".", {p}, 920};
 }
 
 }  // namespace

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "reconstruct_slips.hpp"
 
+#include "digits.hpp"
+
 namespace tool {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::string number(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
 
 const char* name_of(rosin::loop_sense sense) {
   return sense == rosin::loop_sense::none ? "none" : sense == rosin::loop_sense::clockwise ? "clockwise" : "counter-clockwise";
@@ -41,8 +39,8 @@ double median(const take_slips& s, double (*of)(const rosin::slip_loop&)) {
 
 std::string direction(const take_slips& s) {
   const auto& v = s.verdict;
-  const std::string split = number(1e3 * v.split_N, "%+.2f") + " +- " + number(1e3 * v.sd_N, "%.2f") + " mN while it gathers speed against while it loses it, of a range of " +
-                            number(1e3 * v.range_N, "%.0f") + " mN (" + std::to_string(v.loops) + " slips, the fastest quarter of their speeds)";
+  const std::string split = in_digits(1e3 * v.split_N, "%+.2f") + " +- " + in_digits(1e3 * v.sd_N, "%.2f") + " mN while it gathers speed against while it loses it, of a range of " +
+                            in_digits(1e3 * v.range_N, "%.0f") + " mN (" + std::to_string(v.loops) + " slips, the fastest quarter of their speeds)";
   if (v.sense == rosin::loop_sense::none) return "no sense: force " + split;
   return std::string{name_of(v.sense)} + " (velocity to the right, force upwards): force " + split;
 }
@@ -151,8 +149,8 @@ std::vector<std::pair<std::string, std::string>> facts_of(const take_slips& s, c
   const double distance = median(s, [](const rosin::slip_loop& l) { return l.distance_m(); }), work = median(s, [](const rosin::slip_loop& l) { return l.dissipated_J; });
   const double area = median(s, [](const rosin::slip_loop& l) { return l.area_W; }), onset = median(s, [](const rosin::slip_loop& l) { return l.onset_N; });
   const double recapture = median(s, [](const rosin::slip_loop& l) { return l.recapture_N; }), fastest = median(s, [](const rosin::slip_loop& l) { return l.fastest_m_s; });
-  std::string middle = number(1e6 * distance) + " um along the rod, up to " + number(fastest) + " m/s, force " + number(onset) + " N at its onset and " + number(recapture) +
-                       " N at its end, loop of " + number(area, "%+.3g") + " N m/s, " + number(1e6 * work) + " uJ";
+  std::string middle = in_digits(1e6 * distance) + " um along the rod, up to " + in_digits(fastest) + " m/s, force " + in_digits(onset) + " N at its onset and " + in_digits(recapture) +
+                       " N at its end, loop of " + in_digits(area, "%+.3g") + " N m/s, " + in_digits(1e6 * work) + " uJ";
   if (r.ac_coupled) middle += " (forces and work without the unknown mean)";
   return {{"loops of force against velocity", direction(s)}, {"middle one of the slips (" + body(r) + ")", middle}};
 }

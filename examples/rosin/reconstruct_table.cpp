@@ -2,15 +2,12 @@
 //
 // A reconstruction as table, as JSON, and in words.
 //
+#include "digits.hpp"
 #include "reconstruct_slips.hpp"
 
 namespace tool {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::string in_digits(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
 
 std::string processing(const take_reconstruction& r) {
   std::string out = r.how.frequency_domain ? "frequency domain" : "time domain";

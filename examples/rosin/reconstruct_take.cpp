@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "reconstruct_take.hpp"
+#include "digits.hpp"
 #include "reconstruct_channels.hpp"
 
 namespace tool {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::string figure(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
-
 /// Loss is compensated, which multiplies what the fit takes for loss: a fit that went astray must not drown the result.
 void limit_loss(rosin::calibration& c, const rosin::band& limits, std::vector<std::string>& warnings) {
   const double f = limits.stop_Hz, longest = std::max(c.at.delay_s[0], c.at.delay_s[1]);
   const double gain = std::exp(std::numbers::pi * f * longest * c.at.loss.inverse_q(f));
   if (gain > 0.5 && gain < 5) return;
-  warnings.push_back("the fitted loss would change the band's end by a factor of " + figure(gain, "%.2g") + " on its way: no string does that; taken as Q = 1000");
+  warnings.push_back("the fitted loss would change the band's end by a factor of " + in_digits(gain, "%.2g") + " on its way: no string does that; taken as Q = 1000");
   c.at.loss = {rosin::detail::default_quality, 0, 0};
   for (const Eigen::Index p : {3, 4}) {
     c.covariance.row(p).setZero();
@@ -43,8 +40,8 @@ rosin::calibration calibration_at(const calibration_set& set, double declared, d
   c.covariance(1, 1) += doubt * doubt;
   c.covariance(0, 1) -= doubt * doubt;
   c.covariance(1, 0) -= doubt * doubt;
-  warnings.push_back("no pluck was made at the contact's position " + figure(declared, "%.6g") + ": the delays are those of the plucks at " +
-                     figure(set.declared[nearest], "%.6g") + ", moved by the declared distance");
+  warnings.push_back("no pluck was made at the contact's position " + in_digits(declared, "%.6g") + ": the delays are those of the plucks at " +
+                     in_digits(set.declared[nearest], "%.6g") + ", moved by the declared distance");
   return c;
 }
 
@@ -53,11 +50,11 @@ rosin::outcome<rosin::band> band_of(const take_options& how, double rate_Hz, dou
   rosin::band limits{0.30 * rate_Hz, 0.45 * rate_Hz};
   if (how.pass_Hz > 0) limits = {how.pass_Hz, how.stop_Hz > 0 ? how.stop_Hz : std::min(1.5 * how.pass_Hz, 0.5 * rate_Hz)};
   else if (how.stop_Hz > 0) limits = {how.stop_Hz / 1.5, how.stop_Hz};
-  const std::string given = "--pass " + figure(limits.pass_Hz, "%.0f") + " --stop " + figure(limits.stop_Hz, "%.0f") + ": ";
+  const std::string given = "--pass " + in_digits(limits.pass_Hz, "%.0f") + " --stop " + in_digits(limits.stop_Hz, "%.0f") + ": ";
   if (!(limits.pass_Hz < limits.stop_Hz && limits.stop_Hz <= 0.5 * rate_Hz))
-    return rosin::failure{given + "pass has to be below stop, and stop not above half the sampling rate of " + figure(rate_Hz, "%.0f") + " Hz"};
+    return rosin::failure{given + "pass has to be below stop, and stop not above half the sampling rate of " + in_digits(rate_Hz, "%.0f") + " Hz"};
   if (limits.pass_Hz < fundamental_Hz || limits.stop_Hz - limits.pass_Hz < fundamental_Hz)
-    return rosin::failure{given + "pass, and the distance from pass to stop, have to be at least the fundamental, " + figure(fundamental_Hz, "%.0f") + " Hz"};
+    return rosin::failure{given + "pass, and the distance from pass to stop, have to be at least the fundamental, " + in_digits(fundamental_Hz, "%.0f") + " Hz"};
   return limits;
 }
 
@@ -102,7 +99,7 @@ rosin::outcome<process_input> input_of(const rosin::rig& rig, const checked_take
       rosin::restore_ac_coupled(std::span(x), corner, r.rate_Hz);
     } else if (std::abs(offset.value) > 5 * offset.sd && std::abs(offset.value) > 1e-4) {
       for (double& v : x) v -= offset.value;
-      r.assumed.push_back("offset of channel " + name + " = " + figure(1e3 * offset.value) + " mN, that of the plucks: taken out");
+      r.assumed.push_back("offset of channel " + name + " = " + in_digits(1e3 * offset.value) + " mN, that of the plucks: taken out");
     }
   }
   return in;
@@ -161,7 +158,7 @@ void take_frequency_domain(take_reconstruction& r) {
   r.velocity_near_m_s = unrolled(p.velocity_near_m_s, p.source, n), r.velocity_far_m_s = unrolled(p.velocity_far_m_s, p.source, n);
   r.known = {p.source.begin, std::min(p.source.end, n)};
   for (const auto& b : p.regularised)
-    r.warnings.push_back("a termination all but follows the string from " + figure(b.pass_Hz, "%.0f") + " to " + figure(b.stop_Hz, "%.0f") +
+    r.warnings.push_back("a termination all but follows the string from " + in_digits(b.pass_Hz, "%.0f") + " to " + in_digits(b.stop_Hz, "%.0f") +
                          " Hz: the division was regularised there");
 }
 
@@ -229,15 +226,15 @@ void judge(const rosin::rig& rig, take_reconstruction& r) {
   if (const auto& t = r.result.tuning; t && t->sigmas > 5) {
     const double stretch = (t->shift[0] + t->shift[1]) / one_way, length = rig.string.length_m.value_or(0);
     const double moved = (t->shift[0] - r.before.position * (t->shift[0] + t->shift[1])) / one_way;
-    r.warnings.push_back("the search had to move delays and gain ratio by " + figure(t->sigmas, "%.1f") + " standard deviations (tension " +
-                         figure(-200 * stretch, "%+.3f") + " %, contact " + (length > 0 ? figure(1e3 * length * moved, "%+.3f") + " mm" : figure(moved, "%+.5f") + " of the length") +
-                         ", gain ratio " + figure(100 * t->shift[5], "%+.3f") + " %): tension or contact moved since the plucks, or the string does more than the model");
+    r.warnings.push_back("the search had to move delays and gain ratio by " + in_digits(t->sigmas, "%.1f") + " standard deviations (tension " +
+                         in_digits(-200 * stretch, "%+.3f") + " %, contact " + (length > 0 ? in_digits(1e3 * length * moved, "%+.3f") + " mm" : in_digits(moved, "%+.5f") + " of the length") +
+                         ", gain ratio " + in_digits(100 * t->shift[5], "%+.3f") + " %): tension or contact moved since the plucks, or the string does more than the model");
   }
   if (r.delta_force > 0.03)
-    r.warnings.push_back("the two versions of the force differ by Delta = " + figure(r.delta_force, "%.3f") +
+    r.warnings.push_back("the two versions of the force differ by Delta = " + in_digits(r.delta_force, "%.3f") +
                          ": string or sensors do what the model does not hold; the standard deviations count that in");
   if (r.period_s > 0 && std::abs(r.period_s * r.calibration.fundamental_Hz - 1) > 0.06)
-    r.warnings.push_back("the take repeats at " + figure(1 / r.period_s, "%.2f") + " Hz, the plucks at " + figure(r.calibration.fundamental_Hz, "%.2f") +
+    r.warnings.push_back("the take repeats at " + in_digits(1 / r.period_s, "%.2f") + " Hz, the plucks at " + in_digits(r.calibration.fundamental_Hz, "%.2f") +
                          " Hz: check the sample rate in the file's header, or it is no motion of one slip a period");
   if (!r.result.periodic) r.warnings.push_back("no periodic stretch: " + r.result.why_not_periodic);
   if (r.rod_m_s.empty()) r.warnings.push_back("speed_m_s of the take is not given: slips cannot be told from sticking");
@@ -248,7 +245,7 @@ std::optional<rosin::failure> cannot_start(const rosin::take& take, const checke
     return rosin::failure{take.name + ": length_m and tension_N (or impedance_Ns_m) are needed: without the wave impedance there is no velocity in m/s"};
   const double needed = 4 * (r.before.at.delay_s[0] + r.before.at.delay_s[1]);
   if (r.sampled_s > needed) return std::nullopt;
-  return rosin::failure{read.signals.file + ": take " + take.name + ": " + figure(1e3 * r.sampled_s) + " ms are too short: nothing is known within a transit time of either end"};
+  return rosin::failure{read.signals.file + ": take " + take.name + ": " + in_digits(1e3 * r.sampled_s) + " ms are too short: nothing is known within a transit time of either end"};
 }
 
 }  // namespace
@@ -277,7 +274,7 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   if (const auto why = cannot_start(take, read, r)) return *why;
   limit_loss(r.before, r.limits, r.warnings);
   if (calibration.rate_Hz != r.rate_Hz)
-    r.warnings.push_back("recorded at " + figure(r.rate_Hz, "%.0f") + " Hz, the plucks at " + figure(calibration.rate_Hz, "%.0f") + " Hz");
+    r.warnings.push_back("recorded at " + in_digits(r.rate_Hz, "%.0f") + " Hz, the plucks at " + in_digits(calibration.rate_Hz, "%.0f") + " Hz");
   if (const auto why = process(rig, take, read, r)) return *why;
   if (r.result.ends_settle) r.assumed.emplace_back("the take begins in motion: nothing is given until the terminations have forgotten what was before");
   const auto& m = r.result.motion;

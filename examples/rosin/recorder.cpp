@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "recorder.hpp"
 
+#include "digits.hpp"
+
 #include <poll.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -17,13 +19,6 @@ namespace tool {
 namespace {
 
 std::atomic<bool> stop_asked{false};
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::string figure(double x, const char* form) {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), form, x);
-  return text.data();
-}
 
 /// Wall clock and this thread's share of a processor, for how long something took.
 class stop_watch {
@@ -58,7 +53,7 @@ public:
       const int peak = std::clamp(static_cast<int>((rosin::decibels(l.peak) + 60) / 60 * width), 0, width);
       const int rms = std::clamp(static_cast<int>((rosin::decibels(l.rms) + 60) / 60 * width), 0, peak);
       line += " [" + std::string(static_cast<std::size_t>(rms), '=') + std::string(static_cast<std::size_t>(peak - rms), '-') +
-              std::string(static_cast<std::size_t>(width - peak), ' ') + (l.clipped > 0 ? "\x1b[7mCLIP\x1b[0m]" : figure(rosin::decibels(l.peak), "%4.0f") + "]");
+              std::string(static_cast<std::size_t>(width - peak), ' ') + (l.clipped > 0 ? "\x1b[7mCLIP\x1b[0m]" : in_digits(rosin::decibels(l.peak), "%4.0f") + "]");
     }
     std::fputs((line + " " + more).c_str(), stderr);
     std::fflush(stderr);
@@ -100,7 +95,7 @@ public:
     return !got.ended && report_.frames < most_ && !asked_to_end();
   }
   void draw() {
-    const std::string time = trigger_.fired() ? figure(report_.duration_s(), "%7.1f s") : "  waits";
+    const std::string time = trigger_.fired() ? in_digits(report_.duration_s(), "%7.1f s") : "  waits";
     line_.draw(report_.take.name + time, meter_.levels(), hooks_.shows ? hooks_.shows() : "");
   }
   [[nodiscard]] take_report finish() {
@@ -119,7 +114,7 @@ public:
 
 private:
   void problem(const std::string& what) {
-    line_.say((report_.frames > 0 ? "at " + figure(report_.duration_s(), "%.4f") + " s: " : "") + what);
+    line_.say((report_.frames > 0 ? "at " + in_digits(report_.duration_s(), "%.4f") + " s: " : "") + what);
     if (report_.problems.size() < 1000) report_.problems.push_back(what);
   }
   [[nodiscard]] bool asked_to_end() {
@@ -246,8 +241,8 @@ json to_json(const take_report& r) {
 
 std::string summary_of(const take_report& r) {
   if (r.frames == 0) return r.take.name + ": nothing was recorded";
-  std::string out = r.take.name + ": " + figure(r.duration_s(), "%.3f") + " s, " + std::to_string(r.format.channels) + " channels at " +
-                    figure(r.format.sample_rate_Hz, "%.0f") + " Hz, " + (r.format.float_format ? "floating point" : std::to_string(r.format.bits) + " bits");
+  std::string out = r.take.name + ": " + in_digits(r.duration_s(), "%.3f") + " s, " + std::to_string(r.format.channels) + " channels at " +
+                    in_digits(r.format.sample_rate_Hz, "%.0f") + " Hz, " + (r.format.float_format ? "floating point" : std::to_string(r.format.bits) + " bits");
   if (!r.gaps.empty()) out += ", " + std::to_string(r.lost()) + " frames missing in " + std::to_string(r.gaps.size()) + " gaps";
   for (std::size_t c = 0; c < r.clipped.size(); ++c)
     if (r.clipped[c] > 0) out += ", channel " + std::to_string(c) + " at full scale " + std::to_string(r.clipped[c]) + " times";

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "rig_ends.hpp"
 
+#include "digits.hpp"
+
 #include <rosin/acquire/signal_checks.hpp>
 #include <rosin/acquire/rig_values.hpp>
 
@@ -37,7 +39,7 @@ rosin::outcome<rosin::table_termination> completed(const rosin::rig& rig, const 
   const auto end = rosin::complete_admittance(table, impedance_Ns_m);
   const std::string name = which == 0 ? "near" : "far";
   if (!end) return rosin::failure{place_of(rig, which) + ": " + end.error()};
-  const auto percent = [](double x) { return rosin::detail::figure(100 * x, "%.2g") + " %"; };
+  const auto percent = [](double x) { return in_digits(100 * x, "%.2g") + " %"; };
   if (end->repaired > 0) remarks.push_back("terminations." + name + ": " + t.file + ": negative real parts (" + percent(end->repaired) + " of all) were set to 0: a termination takes energy");
   if (end->mismatch > 0.1)
     remarks.push_back("terminations." + name + ": " + t.file + ": its imaginary part differs by " + percent(end->mismatch) + " from what causality makes of its real part, which is used");
@@ -64,7 +66,7 @@ rosin::outcome<rosin::modal_termination> modes_of_table(const rosin::rig& rig, c
   const auto like = rosin::as_modes(*end, {.from_Hz = rig.string.fundamental_Hz / 8, .to_Hz = std::min(2 * t.admittance.back().frequency_Hz, 30e3), .refuse = 0.5, .least_q = ringing_q});
   if (!like) return rosin::failure{place_of(rig, which) + ": " + like.error()};
   remarks.push_back(std::string{"terminations."} + (which == 0 ? "near" : "far") + ": " + t.file + ": by " + std::to_string(like->end.modes.size()) +
-                    " modes, whose reflection differs from the table's by " + rosin::detail::figure(100 * like->mismatch, "%.2g") + " % of what moves");
+                    " modes, whose reflection differs from the table's by " + in_digits(100 * like->mismatch, "%.2g") + " % of what moves");
   return like->end;
 }
 

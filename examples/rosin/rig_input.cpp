@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "rig_input.hpp"
 
+#include "digits.hpp"
+
 namespace tool {
 
 rosin::outcome<rosin::rig_folder> open_rig(const std::string& path, provenance& from) {
@@ -47,8 +49,8 @@ std::string sentence(const rosin::rig& rig, const rosin::finding& finding) {
   out += "take " + finding.take;
   if (take != nullptr) out += " (" + rig.file + ":" + std::to_string(take->line) + ")";
   if (!finding.channel.empty()) out += ", channel " + finding.channel;
-  out += ", " + rosin::detail::figure(finding.start_s, "%.4f");
-  if (finding.end_s > finding.start_s) out += " to " + rosin::detail::figure(finding.end_s, "%.4f");
+  out += ", " + in_digits(finding.start_s, "%.4f");
+  if (finding.end_s > finding.start_s) out += " to " + in_digits(finding.end_s, "%.4f");
   return out + " s: " + name_of(finding.level) + ": " + finding.what + "; " + finding.advice;
 }
 

@@ -3,6 +3,7 @@
 // rosin simulate: the recordings that a rig file names, made by a simulation, with the truth in another place.
 //
 #include "commands.hpp"
+#include "digits.hpp"
 #include "progress.hpp"
 #include "rig_input.hpp"
 #include "simulate_declaration.hpp"
@@ -149,13 +150,12 @@ std::vector<std::string> warnings(const simulation_plan& plan, const std::vector
 }
 
 void print_text(const simulation_plan& plan, const std::vector<simulated_take>& takes, const places& to, const std::vector<std::string>& warned) {
-  using rosin::detail::figure;
   for (std::size_t i = 0; i < takes.size(); ++i) {
     const auto& take = plan.takes[i].declared;
-    std::cout << take.name << " (" << name_of(take.kind) << ", " << to.recordings[i].string() << "): " << figure(plan.duration_s) << " s at "
-              << figure(plan.settings.sample_rate_Hz, "%.0f") << " Hz";
+    std::cout << take.name << " (" << name_of(take.kind) << ", " << to.recordings[i].string() << "): " << in_digits(plan.duration_s) << " s at "
+              << in_digits(plan.settings.sample_rate_Hz, "%.0f") << " Hz";
     for (std::size_t c = 0; c < plan.channels.size(); ++c)
-      std::cout << ", " << plan.channels[c].declared.name << " up to " << figure(100 * takes[i].peak_share[c], "%.0f") << " %";
+      std::cout << ", " << plan.channels[c].declared.name << " up to " << in_digits(100 * takes[i].peak_share[c], "%.0f") << " %";
     if (take.kind == rosin::take_kind::bow) std::cout << ", " << name_of(motion_of(takes[i].truth)) << ", " << takes[i].truth.slips << " slips";
     std::cout << '\n';
   }

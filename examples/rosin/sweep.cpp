@@ -24,7 +24,7 @@ namespace tool {
 
 namespace {
 
-struct options {
+struct sweep_options {
   std::string rig, plane = "schelleng", position, force, acceleration, out, svg, shard = "1/1";
   std::vector<std::string> merge;
   double speed_m_s = 0, rate_Hz = 256000, periods = 100;
@@ -84,7 +84,7 @@ private:
   std::unique_ptr<rosin::outcome<rosin::wave_design>> design_;
 };
 
-rosin::outcome<sweep_plane> plan_axes(const options& given) {
+rosin::outcome<sweep_plane> plan_axes(const sweep_options& given) {
   const bool guettler = given.plane == "guettler";
   const auto x = guettler ? parse_axis("acceleration_m_s2", given.acceleration.empty() ? "0.2:20:16" : given.acceleration)
                           : parse_axis("position", given.position.empty() ? "0.03:0.2:16" : given.position);
@@ -105,7 +105,7 @@ std::optional<rosin::failure> read_shard(const std::string& text, sweep_setup& s
 }
 
 /// The string and its bow from the rig file; `--` options win over the first bowed take.
-std::optional<rosin::failure> read_setup(const rosin::rig& rig, const options& given, sweep_setup& setup, std::vector<std::string>& notes) {
+std::optional<rosin::failure> read_setup(const rosin::rig& rig, const sweep_options& given, sweep_setup& setup, std::vector<std::string>& notes) {
   const auto string = nominal_string(rig, notes);
   if (!string) return rosin::failure{string.error()};
   setup.rig.string = *string;
@@ -137,7 +137,7 @@ std::optional<rosin::failure> read_setup(const rosin::rig& rig, const options& g
   return read_shard(given.shard, setup);
 }
 
-std::string conditions(const options& given, const sweep_setup& setup) {
+std::string conditions(const sweep_options& given, const sweep_setup& setup) {
   std::ostringstream out;
   const auto& s = setup.rig.string;
   out << "plane " << given.plane << ", position " << (given.plane == "guettler" ? std::to_string(setup.position) : "x") << ", speed " << setup.speed_m_s << " m/s, "
@@ -159,7 +159,7 @@ std::vector<std::size_t> pending(const sweep_plane& plane, const sweep_setup& se
 }
 
 /// All pending points on all cores; each goes to the file at once.
-void fill(sweep_plane& plane, const sweep_setup& setup, const options& given, std::ostream& file) {
+void fill(sweep_plane& plane, const sweep_setup& setup, const sweep_options& given, std::ostream& file) {
   const auto todo = pending(plane, setup);
   progress bar{"sweeping", todo.size()};
   std::atomic<std::size_t> next{0};
@@ -183,7 +183,7 @@ void fill(sweep_plane& plane, const sweep_setup& setup, const options& given, st
   for (auto& one : crew) one.join();
 }
 
-void print_summary(const options& given, const sweep_plane& plane, const std::vector<std::string>& notes) {
+void print_summary(const sweep_options& given, const sweep_plane& plane, const std::vector<std::string>& notes) {
   std::map<std::string, std::size_t> counts;
   std::size_t unconverged = 0;
   for (const auto& [index, point] : plane.points) ++counts[point.regime], unconverged += point.unconverged;
@@ -198,14 +198,14 @@ std::optional<rosin::failure> write_text(const std::string& path, const std::str
   return rosin::write_file(path, rosin::overwrite::allow, [&](std::ostream& out) { out << text; });
 }
 
-exit_code finish(const options& given, const sweep_plane& plane, const std::vector<std::string>& notes) {
+exit_code finish(const sweep_options& given, const sweep_plane& plane, const std::vector<std::string>& notes) {
   if (!given.svg.empty())
     if (const auto why = write_text(given.svg, plane_svg(plane))) return fail(why->message, given.json);
   print_summary(given, plane, notes);
   return exit_code::ok;
 }
 
-exit_code run_merge(const options& given) {
+exit_code run_merge(const sweep_options& given) {
   std::error_code ignored;
   if (std::filesystem::exists(given.out, ignored) && !given.force_overwrite) return fail(given.out + ": exists already; --force overwrites it", given.json);
   const auto plane = merge_planes(given.merge);
@@ -214,7 +214,7 @@ exit_code run_merge(const options& given) {
   return finish(given, *plane, {});
 }
 
-exit_code run(const options& given) {
+exit_code run(const sweep_options& given) {
   if (!given.merge.empty()) return run_merge(given);
   if (given.rig.empty()) return fail("rosin sweep: RIG is missing", given.json);
   const auto rig = rosin::load_rig(given.rig, rosin::take_files::to_be_made);
@@ -245,7 +245,7 @@ exit_code run(const options& given) {
 }  // namespace
 
 void add_sweep(CLI::App& app, exit_code& result) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<sweep_options>();
   CLI::App* command = app.add_subcommand("sweep", "Bow the string of a rig at every point of a plane, and name what it does");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds it; recordings are not needed");
   command->add_option("--plane", given->plane, "schelleng (force against position) or guettler (force against acceleration)")
