@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Installs what is missing, then builds and runs the tests with sanitizers. Whatever is up to date is not built again.
-#   tests/run.sh [PRESET]     dev (default), clang, release or release-clang
+#   tests/run.sh [PRESET]     dev (default: Clang), gcc, release or release-clang
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-dev}
 
 case $preset in
-  *clang) .ci/install-packages clang ;;
+  dev | *clang) .ci/install-packages clang ;;
   *) .ci/install-packages ;;
 esac
 cmake --workflow --preset "$preset"

@@ -33,6 +33,16 @@ hidden_effect beside_the_string(challenge_rig& r, source& s, double k) {
   return {{}, "", "", {{"position", x}, {"gap_m", -gap}}};
 }
 
+/// One end that does not let the string turn, or both alike.
+hidden_effect held_against_turning(challenge_rig& r, source& s, double k) {
+  const std::size_t e = side(s);
+  const bool both = s.uniform() < 0.5;
+  const double clamping = std::min(1.0, k * s.uniform(0.4, 1.2));
+  r.burden.clamping[e] = clamping;
+  if (both) r.burden.clamping[1 - e] = clamping;
+  return {{}, both ? std::string{} : name_of_side(e), "", {{"clamping", clamping}}};
+}
+
 /// Of the air's boundary layer.
 hidden_effect in_air(challenge_rig& r, source& s, double k) {
   const double loss = k * evenly_in_log(s, 2e-3, 1e-2);
@@ -78,7 +88,7 @@ hidden_effect creeping(challenge_rig& r, source& s, double k) {
 
 const std::map<std::string, std::function<hidden_effect(challenge_rig&, source&, double)>>& requests() {
   static const std::map<std::string, std::function<hidden_effect(challenge_rig&, source&, double)>> all{
-      {"air-loss", in_air},          {"clock-drift", two_clocks},  {"creep", creeping},          {"dropouts", cut_out}, {"finite-pluck-width", wide_wire},
+      {"air-loss", in_air},          {"clamped-end", held_against_turning}, {"clock-drift", two_clocks},  {"creep", creeping},          {"dropouts", cut_out}, {"finite-pluck-width", wide_wire},
       {"phantom-partials", felt_tension}, {"pluck-position", plucked_elsewhere}, {"rattle", beside_the_string}, {"sympathetic-string", another_string}};
   return all;
 }

@@ -67,6 +67,7 @@ std::string statement_of(const missing_effect& m) {
   if (m.effect == "sympathetic-string") return "Another string rings along at the " + m.end + " termination: " + v("frequency_Hz", 1, "%.5g") + " Hz (Q " + v("q") + ").";
   if (m.effect == "resistive-end") return "The " + m.end + " termination takes energy: " + v("resistance_Ns_m") + " N s/m.";
   if (m.effect == "massive-end") return "The " + m.end + " termination moves like a mass of " + v("mass_kg", 1e3) + " g.";
+  if (m.effect == "clamped-end") return (m.end.empty() ? "Both terminations hold" : "The " + m.end + " termination holds") + " the string against turning: clamped to " + v("clamping", 100) + " %.";
   if (m.effect == "ac-coupling") return "Both channels are AC coupled at " + v("cutoff_Hz") + " Hz.";
   if (m.effect == "sensor-resonance") return "The " + m.channel + " transducer itself resonates at " + v("frequency_Hz", 1e-3, "%.4g") + " kHz (Q " + v("q") + ").";
   if (m.effect == "channel-skew") {

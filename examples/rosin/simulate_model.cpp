@@ -64,6 +64,13 @@ void put_other_string(const found_effect& e, parameters_of& p, simulation_plan& 
     if (const double f = n * first * std::sqrt((1 + b * n * n) / (1 + b)); f < highest_Hz) plan.burden.string.ends[p.side(e.end)].modes.push_back({f, p("q"), per_mass * std::pow(n, p("slope"))});
 }
 
+/// Of one end, or of both.
+void put_clamping(const found_effect& e, parameters_of& p, simulation_plan& plan) {
+  const double clamping = p("clamping");
+  for (std::size_t side = 0; side < 2; ++side)
+    if (double& there = plan.burden.string.clamping[side]; e.end.empty() || p.side(e.end) == side) there = std::min(1.0, there + clamping);
+}
+
 /// What is found in [friction] or in the fit of the string has been put in already.
 void put_nothing(const found_effect&, parameters_of&, simulation_plan&) {}
 
@@ -83,6 +90,7 @@ const std::map<std::string, put>& can_be_put() {
        [](effect e, get p, plan to) {
          to.burden.string.ends[p.side(e.end)].modes.push_back({p("frequency_Hz"), p("q"), to.rig.string.impedance_Ns_m() / p("mass_kg")});
        }},
+      {"clamped-end", put_clamping},
       {"sympathetic-string", [](effect e, get p, plan to) { put_other_string(e, p, to); }},
       {"ac-coupling", [](effect, get p, plan to) { put_ac_coupling(p, to); }},
       {"sensor-resonance",

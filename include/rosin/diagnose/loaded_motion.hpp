@@ -13,6 +13,10 @@
 //
 //     this side's force:  -g e^(gamma d),    the other side's:  -g e^(-gamma d),    this side's velocity:  -g sinh(gamma d) / (G Z_w).
 //
+// An end that resists turning is such an echo, too: with a and h of string_side.hpp it changes these by
+//
+//     G F (h e^(-i a) - 1) e^(gamma x_b),    G F (h e^(i a) - 1) e^(-gamma x_b),    F (h sinh(gamma x_b - i a) - sinh(gamma x_b)) / Z_w.
+//
 // Whole records, in the frequency domain. Stiffness enters as in bow_point_transfer.hpp; a near field is felt by its own load only.
 //
 #pragma once
@@ -33,11 +37,17 @@ struct load_echo {
   std::complex<double> own_force, other_force, velocity, near_field;  ///< the last: to both velocities
 };
 
-/// `loads`: on this side, outwards from the end, positions as travel times from it.
+/// `loads`: on this side, outwards from the end, positions as travel times from it. `clamping`: of the end.
 [[nodiscard]] inline load_echo echo_of_loads(const std::vector<load_on_side>& loads, double to_bow_s, const bow_point& at, double f_Hz, std::complex<double> force,
-                                             std::complex<double> moved) {
-  const side_waves waves = waves_at(f_Hz, at.stiffness_s2, propagation_rate(f_Hz, at.stiffness_s2, at.loss));
+                                             std::complex<double> moved, double clamping = 0) {
+  const side_waves waves = waves_at(f_Hz, at.stiffness_s2, propagation_rate(f_Hz, at.stiffness_s2, at.loss), clamping);
   load_echo out{};
+  if (waves.ahead != 0) {
+    const std::complex<double> turn = std::polar(waves.held, -waves.ahead), onwards = std::exp(waves.gamma * to_bow_s);
+    out.own_force = waves.force_factor * force * (turn - 1.0) * onwards;
+    out.other_force = waves.force_factor * force * (std::conj(turn) - 1.0) / onwards;
+    out.velocity = force * (waves.sinh(to_bow_s) - std::sinh(waves.gamma * to_bow_s)) / (waves.impedance_ratio * at.impedance_Ns_m);
+  }
   for (const auto& [place, g] : returned_by_loads(loads, waves, to_bow_s, force, moved)) {
     const auto onwards = std::exp(waves.gamma * (to_bow_s - place));
     out.own_force -= g * onwards;
@@ -48,22 +58,23 @@ struct load_echo {
   return out;
 }
 
-/// Adds the echoes of all loads to a motion that was reconstructed without them.
-inline void add_echoes(const std::vector<scatterer>& loads, const bow_point& at, const std::array<std::vector<double>, 2>& force_N,
+/// Adds the echoes of all loads, and of ends that resist turning, to a motion that was reconstructed without them.
+inline void add_echoes(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N,
                        const std::array<std::vector<double>, 2>& moved_N, const band& limits, double rate_Hz, bow_motion<double>& motion) {
-  const auto on_side = loads_by_side(loads, at.delay_s);
+  const auto on_side = loads_by_side(scene.scatterers, at.delay_s);
   held_record record(force_N[0].size(), 8192);
   std::array<std::vector<std::complex<double>>, 4> change;
   for (auto& c : change) c.resize(record.bins());
   for (std::size_t side = 0; side < 2; ++side) {
     const auto& mine = on_side[side];
-    if (mine.empty()) continue;
+    const double clamping = scene.ends[side].clamping;
+    if (mine.empty() && clamping == 0) continue;
     const auto force = record.spectrum(force_N[side]);
     const auto moved = moved_N[side].empty() ? std::vector<std::complex<double>>(record.bins()) : record.spectrum(moved_N[side]);
     for (std::size_t k = 1; k < record.bins(); ++k) {
       const double f = record.frequency_Hz(k, rate_Hz);
       if (f >= limits.stop_Hz) break;
-      const load_echo e = echo_of_loads(mine, at.delay_s[side], at, f, limits(f) * force[k], limits(f) * moved[k]);
+      const load_echo e = echo_of_loads(mine, at.delay_s[side], at, f, limits(f) * force[k], limits(f) * moved[k], clamping);
       change[side][k] += e.own_force, change[1 - side][k] += e.other_force;
       change[2 + side][k] += e.velocity + e.near_field, change[3 - side][k] += e.near_field;
     }
@@ -77,7 +88,7 @@ inline void add_echoes(const std::vector<scatterer>& loads, const bow_point& at,
 
 }  // namespace detail
 
-/// Reconstruction with the loads and the yielding ends of a scene; forces in newtons. Modes of the ends count, nothing else of them.
+/// Reconstruction with the loads and the yielding ends of a scene; forces in newtons. Of the ends modes and clamping count, nothing else.
 [[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N, const band& limits,
                                                            double rate_Hz) {
   std::array<std::vector<double>, 2> moved;
@@ -94,7 +105,7 @@ inline void add_echoes(const std::vector<scatterer>& loads, const bow_point& at,
     motion = reconstructor<double, with_moving_ends<full_physics>>(at, limits, rate_Hz)(
         end_signals<double, with_moving_ends<full_physics>>{force_N[0], force_N[1], both[0], both[1]});
   }
-  if (!scene.scatterers.empty()) detail::add_echoes(scene.scatterers, at, force_N, moved, limits, rate_Hz, motion);
+  if (!scene.scatterers.empty() || scene.ends[0].clamping != 0 || scene.ends[1].clamping != 0) detail::add_echoes(scene, at, force_N, moved, limits, rate_Hz, motion);
   return motion;
 }
 

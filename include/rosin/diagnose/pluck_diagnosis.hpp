@@ -112,7 +112,7 @@ private:
   /// them. What a declared end is off by is no other mode of it.
   [[nodiscard]] bool is_worth(const comparison& c, const pluck_effect& e, int round) const {
     if (round == 0 && !d_.data.layout.has_ends()) return true;
-    const bool much = c.was > 1e-4 * all_there_was_, at_known_end = e.at_end && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
+    const bool much = c.was > 1e-4 * all_there_was_, at_known_end = e.at_end && e.place >= 0 && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
     return c.left < c.was / 3 && (much || (!at_known_end && c.left < c.was / 30));
   }
 

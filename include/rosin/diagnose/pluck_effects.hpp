@@ -108,6 +108,26 @@ inline pluck_effect massive_end_effect(const string_facts& f, int end) {
           [Z, end](pluck_scene& s, const double* v, int) { s.ends[static_cast<std::size_t>(end)].per_free_mass_per_s += v[0] * Z; }};
 }
 
+/// An end that holds the string against turning (a knife's edge does not, a vice does), or both alike (`end` -1). For slow motion the string is but
+/// shorter: pitch, stiffness and place go along.
+inline pluck_effect clamped_end_effect(const string_facts&, int end) {
+  pluck_effect e{"clamped-end", end, true, {{"clamping", 0, 1, 1e-6}}, {{0.3}, {1.0}}, 0, [end](pluck_scene& s, const double* v, int) {
+                   for (int side = 0; side < 2; ++side)
+                     if (double& clamping = s.ends[static_cast<std::size_t>(side)].clamping; end < 0 || side == end) clamping = std::min(1.0, clamping + v[0]);
+                 }};
+  e.rebase = [end](const pluck_layout& layout, Eigen::VectorXd& v) {
+    const double less = shortened_by(layout.string(v), v[v.size() - 1]), whole = 1 / (1 + (end < 0 ? 2 : 1) * less);  // of the old length, of the new
+    v[pluck_layout::fundamental] *= whole;
+    for (std::size_t p = 0; p < layout.positions().size(); ++p) {
+      double& x = v[pluck_layout::first_position + static_cast<Eigen::Index>(p)];
+      x = (x + (end == 1 ? 0 : less)) * whole;
+    }
+    v[pluck_layout::inharmonicity] *= whole * whole;
+  };
+  if (end < 0) e.variant = "both";
+  return e;
+}
+
 /// Both channels pass a first-order high-pass. What the held string gave was taken for part of the offset.
 inline pluck_effect ac_coupling_effect(const string_facts&) {
   pluck_effect e{"ac-coupling", -1, false, {{"cutoff_Hz", 0.005, 200, 1e-5, true}}, {{0.1}, {0.5}, {2}, {8}, {25}, {70}}, -1,
@@ -172,8 +192,10 @@ inline pluck_effect pluck_width_effect(const string_facts& f) {
     all.push_back(support_resonance_effect(f, place));
     all.push_back(resistive_end_effect(f, place));
     all.push_back(massive_end_effect(f, place));
+    all.push_back(clamped_end_effect(f, place));
     all.push_back(sensor_resonance_effect(f, place));
   }
+  all.push_back(clamped_end_effect(f, -1));
   return all;
 }
 

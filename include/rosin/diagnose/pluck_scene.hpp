@@ -42,6 +42,7 @@ struct yielding_end {
   double conductance = 0;         ///< Z / R
   double per_free_mass_per_s = 0; ///< Z / M of an end that is nothing but a mass
   double lag_s = 0;               ///< of the motion behind the force; may be slightly negative
+  double clamping = 0;            ///< against turning, k / (k + sqrt(B T)) with the end's k in N m; 0: pinned, 1: clamped. A stiff string only
 
   [[nodiscard]] bool rigid() const { return modes.empty() && conductance == 0 && per_free_mass_per_s == 0; }
   [[nodiscard]] std::complex<double> admittance(std::complex<double> s) const {
@@ -87,7 +88,26 @@ struct pluck_scene {
   double crosstalk = 0;               ///< of each channel in the other
   std::vector<hum_phasor> hum;
 
-  [[nodiscard]] bool plain_string() const { return scatterers.empty() && ends[0].rigid() && ends[1].rigid(); }
+  [[nodiscard]] bool plain_string() const { return scatterers.empty() && ends[0].rigid() && ends[1].rigid() && ends[0].clamping == 0 && ends[1].clamping == 0; }
 };
+
+/// The phase by which a wave is ahead at an end that resists turning, tan a = q sqrt(1/epsilon) clamping / ((1 - clamping) (q^2 + kc^2) +
+/// clamping kc sqrt(1/epsilon)); q and kc per second of travel, kc^2 = q^2 + 1/epsilon.
+[[nodiscard]] inline double phase_ahead(double q, double epsilon, double clamping) {
+  if (clamping == 0) return 0;
+  const double kappa = std::sqrt(q * q + 1 / epsilon), still = std::sqrt(1 / epsilon);
+  return std::atan2(clamping * still * q, (1 - clamping) * (q * q + kappa * kappa) + clamping * kappa * still);
+}
+
+/// What an end that does not turn freely takes from the string's length for slow motion, a fraction of it: clamping sqrt(B / T) / L.
+[[nodiscard]] inline double shortened_by(const ringing_string& string, double clamping) {
+  return clamping * std::sqrt(std::max(0.0, string.stiffness_s2())) * 2 * string.fundamental_Hz;
+}
+
+/// Forces on the ends while the wire holds the string with 1 N, near and far.
+[[nodiscard]] inline std::array<double, 2> held_forces(const pluck_scene& scene, double position) {
+  const double near = shortened_by(scene.string, scene.ends[0].clamping), far = shortened_by(scene.string, scene.ends[1].clamping);
+  return static_forces((position - near) / (1 - near - far));
+}
 
 }  // namespace rosin

@@ -128,7 +128,7 @@ public:
     }
     for (damped_line& line : out)
       for (std::size_t c = 0; c < 2; ++c) line.residue[c] *= gain(v, c);
-    const auto still = static_forces(position_now);
+    const auto still = held_forces(s, position_now);
     for (std::size_t c = 0; c < 2; ++c) {
       const double held = newtons * gain(v, c) * (still[c] + s.crosstalk * still[1 - c]);
       out.push_back(slow_line(v, take, part, begin_s, c, s.sensors[c].corner_Hz, held));

@@ -75,6 +75,19 @@ inline bool stayed(const std::vector<std::complex<double>>& roots, const std::ve
   return true;
 }
 
+/// The n-th partial of a string whose ends resist turning, but for what else is in the scene: q L = n pi + the phases that the ends are ahead by.
+inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
+  if (scene.ends[0].clamping == 0 && scene.ends[1].clamping == 0) return scene.string.partial_Hz(n);
+  const double epsilon = std::max(scene.string.stiffness_s2(), 1e-30), length = 0.5 / scene.string.fundamental_Hz;
+  double q = n * std::numbers::pi / length;
+  for (int i = 0; i < 30; ++i) {
+    const double next = (n * std::numbers::pi + phase_ahead(q, epsilon, scene.ends[0].clamping) + phase_ahead(q, epsilon, scene.ends[1].clamping)) / length;
+    if (std::abs(next - q) < 1e-12 * q) break;
+    q = next;
+  }
+  return q * std::sqrt(1 + epsilon * q * q) / (2 * std::numbers::pi);
+}
+
 }  // namespace detail
 
 /// Poles below `highest_Hz`, in order of frequency. `near`: poles of a scene much like this one, to begin from; may be empty.
@@ -87,7 +100,7 @@ inline bool stayed(const std::vector<std::complex<double>>& roots, const std::ve
   }
   std::vector<std::complex<double>> roots;
   for (int n = 1; n <= most; ++n) {
-    const double f = scene.string.partial_Hz(n);
+    const double f = detail::partial_between_clamps_Hz(scene, n);
     if (f >= highest_Hz) break;
     roots.emplace_back(-std::numbers::pi * f * scene.string.loss.inverse_q(f), 2 * std::numbers::pi * f);
   }

@@ -9,7 +9,14 @@
 //     an end moved at unit speed feels  S = (Z/s) kc q / (q^2+kc^2) epsilon [ kc^3 cot qL - q^3 coth kc L ]  at itself,
 //                             and  X = the same with -1/sin qL, -1/sinh kc L at the other end
 //
-// (M, A, S are one another's by reciprocity, A from -B y''' + T y'). Scatterers and ends close the loop:
+// (M, A, S are one another's by reciprocity, A from -B y''' + T y'). An end that resists turning gives the string a moment; a unit moment (over c)
+// does what two opposite forces close to the end do, so that all of its answers are slopes of M and A there:
+//
+//     velocity at d from the end:  s / (Z (1+2K)) [ sin q(L-d) / sin qL  -  sinh kc (L-d) / sinh kc L ]
+//     the end's own turning:       s / (Z (1+2K)) [ kc coth kc L  -  q cot qL ],       the other end's: s / (Z (1+2K)) [ q / sin qL - kc / sinh kc L ]
+//     force on the same end:       -[ (1+K) q cot qL + K kc coth kc L ] / (1+2K),   on the other: [ (1+K) q / sin qL + K kc / sinh kc L ] / (1+2K)
+//
+// Scatterers and ends close the loop:
 // a small linear system whose determinant vanishes at the poles. Newton from the pinned string's poles, strength raised in steps.
 // Loss enters k as in transmission.hpp. What it makes of the impedance is a matter of convention, and a heavy bead tells: with every mode
 // damped by itself, i w w_m / Q, the loss sits half in the tension and half in the mass, T (1 + i / 2Q), but for
@@ -89,7 +96,21 @@ public:
   [[nodiscard]] complex other_end() const {
     return modulus_ * kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * kappa_ * kappa_ * kappa_;
   }
+  /// The answer to a unit moment on an end, sin(qL) times: velocity at a, over s (1/Z); the same end's turning and the other's, likewise; force on
+  /// the same end and on the other.
+  [[nodiscard]] complex turning(int end, double a) const {
+    const double here = (end == 0 ? a : 1 - a) * length_;
+    return stiff_ * (sine_of(length_ - here) - sine_ * fading(here));
+  }
+  [[nodiscard]] complex own_turning() const { return stiff_ * (kappa_ * sine_ - q_ * cosine_); }
+  [[nodiscard]] complex other_turning() const { return stiff_ * q_; }
+  [[nodiscard]] complex own_end_by_moment() const { return -stiff_ * ((1.0 + K_) * q_ * cosine_ + K_ * kappa_ * sine_); }
+  [[nodiscard]] complex other_end_by_moment() const { return stiff_ * (1.0 + K_) * q_; }
   [[nodiscard]] complex sine() const { return sine_; }
+  /// T (1 + i / 2Q) / T / s: what turns the answers above into velocities, inverted.
+  [[nodiscard]] complex per_velocity() const { return modulus_ / s_; }
+  /// sqrt(B / T) as a travel time: the reach of the near field.
+  [[nodiscard]] double reach_s() const { return std::sqrt(epsilon_); }
   /// The frequency that a load's impedance is to be taken at.
   [[nodiscard]] complex load_s() const { return load_s_; }
 
@@ -103,8 +124,8 @@ private:
   complex load_s_, modulus_, q_, K_, kappa_, sine_, cosine_, stiff_;
 };
 
-/// Scatterers and yielding ends together.
-inline constexpr int most_loops = 8;
+/// Scatterers, yielding and clamped ends together.
+inline constexpr int most_loops = 10;
 
 /// The closed loop at one frequency: determinant, and the forces on the ends for a unit force at `position`.
 struct loop_response {
@@ -127,12 +148,46 @@ struct moving_ends {
   [[nodiscard]] int operator[](Eigen::Index i) const { return end[static_cast<std::size_t>(i)]; }
 };
 
+/// The ends of a scene that resist turning.
+struct clamped_ends {
+  std::array<int, 2> end{};
+  Eigen::Index count = 0;
+  explicit clamped_ends(const pluck_scene& scene) {
+    for (int e = 0; e < 2; ++e)
+      if (scene.ends[static_cast<std::size_t>(e)].clamping != 0) end[static_cast<std::size_t>(count++)] = e;
+  }
+  [[nodiscard]] int operator[](Eigen::Index i) const { return end[static_cast<std::size_t>(i)]; }
+};
+
+/// Rows and columns of the ends that resist turning, after those of the others: (1 - clamping) M + clamping sqrt(B T) (turning / s) = 0.
+inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_at& string, const moving_ends& ends, std::complex<double> s, double strength) {
+  const clamped_ends clamped(scene);
+  const auto count = static_cast<Eigen::Index>(scene.scatterers.size()), first = count + ends.count;
+  for (Eigen::Index c = 0; c < clamped.count; ++c) {
+    const double clamping = strength * scene.ends[static_cast<std::size_t>(clamped[c])].clamping, k = clamping * string.reach_s();
+    const auto end_force = [&](Eigen::Index m) { return ends[m] == clamped[c] ? string.own_end_by_moment() : string.other_end_by_moment(); };
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const scatterer& on = scene.scatterers[static_cast<std::size_t>(j)];
+      const std::complex<double> turning = string.turning(clamped[c], on.position);
+      A(first + c, j) = k * turning;
+      A(j, first + c) = strength * on.impedance(string.load_s()) / string.per_velocity() * turning;
+    }
+    for (Eigen::Index m = 0; m < ends.count; ++m) {
+      A(first + c, count + m) = k * string.per_velocity() * end_force(m);
+      A(count + m, first + c) = -strength * scene.ends[static_cast<std::size_t>(ends[m])].admittance(s) * end_force(m);
+    }
+    for (Eigen::Index o = 0; o < clamped.count; ++o)
+      A(first + c, first + o) = o == c ? (1 - clamping) * string.sine() + k * string.own_turning() : k * string.other_turning();
+  }
+}
+
 /// sin(qL) times the loop's matrix: g_i + Z_i v_i = 0 for scatterers, u_m - Y F_m = 0 for ends (the string's velocity by u_m is by
 /// reciprocity its end force).
 [[nodiscard]] inline loop_matrix loop_of(const pluck_scene& scene, const string_at& string, const moving_ends& ends, std::complex<double> s, double strength) {
   const auto count = static_cast<Eigen::Index>(scene.scatterers.size());
   const auto at = [&](Eigen::Index i) { return scene.scatterers[static_cast<std::size_t>(i)].position; };
-  loop_matrix A = loop_matrix::Zero(count + ends.count, count + ends.count);
+  const auto size = count + ends.count + clamped_ends(scene).count;
+  loop_matrix A = loop_matrix::Zero(size, size);
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::complex<double> Z = strength * scene.scatterers[static_cast<std::size_t>(i)].impedance(string.load_s());
     for (Eigen::Index j = 0; j < count; ++j) A(i, j) = Z * string.mobility(at(i), at(j));
@@ -145,6 +200,7 @@ struct moving_ends {
     for (Eigen::Index i = 0; i < count; ++i) A(count + m, i) = -Y * string.end_force(ends[m], at(i));
     for (Eigen::Index k = 0; k < ends.count; ++k) A(count + m, count + k) -= Y * (k == m ? string.own_end() : string.other_end());
   }
+  add_moments(A, scene, string, ends, s, strength);
   return A;
 }
 
@@ -169,7 +225,8 @@ struct moving_ends {
 [[nodiscard]] inline loop_response close_loop(const pluck_scene& scene, double position, std::complex<double> s) {
   const string_at string(scene, s);
   const detail::moving_ends ends(scene);
-  const auto count = static_cast<Eigen::Index>(scene.scatterers.size()), n = count + ends.count;
+  const detail::clamped_ends clamped(scene);
+  const auto count = static_cast<Eigen::Index>(scene.scatterers.size()), n = count + ends.count + clamped.count;
   if (n == 0) return {string.sine(), {string.end_force(0, position), string.end_force(1, position)}};
   const detail::loop_matrix A = detail::loop_of(scene, string, ends, s, 1);
   Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 1, 0, most_loops, 1> drive(n);
@@ -182,6 +239,10 @@ struct moving_ends {
   for (Eigen::Index m = 0; m < ends.count; ++m) {
     drive[count + m] = scene.ends[static_cast<std::size_t>(ends[m])].admittance(s) * string.end_force(ends[m], position);
     for (int o = 0; o < 2; ++o) out(o, count + m) = o == ends[m] ? string.own_end() : string.other_end();
+  }
+  for (Eigen::Index c = 0; c < clamped.count; ++c) {
+    drive[count + ends.count + c] = -scene.ends[static_cast<std::size_t>(clamped[c])].clamping * string.reach_s() * string.turning(clamped[c], position);
+    for (int o = 0; o < 2; ++o) out(o, count + ends.count + c) = o == clamped[c] ? string.own_end_by_moment() : string.other_end_by_moment();
   }
   loop_response r{detail::determinant_of(A, string.sine()), {}};
   if (n == 1) drive *= detail::reciprocal(A(0, 0));

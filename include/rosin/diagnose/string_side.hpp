@@ -7,7 +7,8 @@
 //     f(x) / G = F cosh(gamma x) + Z V (r sinh(gamma x) + i b cosh(gamma x)) - sum_(x_i < x) (g_i / G) cosh(gamma (x - x_i)),
 //
 // r = (Z_w / Z) / G and b = q rho K / (w G) as in bow_point_transfer.hpp, x being the travel time from the end, g_i what the i-th load returns
-// (loaded_motion.hpp), and f G times what a constant impedance would make of the waves. A plain side is sinh and cosh.
+// (loaded_motion.hpp), and f G times what a constant impedance would make of the waves. A plain side is sinh and cosh. Where the end resists turning,
+// waves are ahead there by a phase a (pluck_scene.hpp), and the end feels 1 / h = cos a + (k / kappa) sin a of their force: h F sinh(gamma x - i a) for F sinh(gamma x).
 //
 #pragma once
 
@@ -35,11 +36,16 @@ struct side_waves {
   double force_factor = 1;     ///< G
   std::complex<double> dent;   ///< the near field under a load, Z v / g
   std::complex<double> bent;   ///< i b, the near field of an end that moves
+  double ahead = 0, held = 1;  ///< a and h, of an end that resists turning
+
+  [[nodiscard]] std::complex<double> sinh(double place_s) const { return held * std::sinh(gamma * place_s - std::complex<double>(0, ahead)); }
+  [[nodiscard]] std::complex<double> cosh(double place_s) const { return held * std::cosh(gamma * place_s - std::complex<double>(0, ahead)); }
 };
-[[nodiscard]] inline side_waves waves_at(double f_Hz, double stiffness_s2, std::complex<double> gamma) {
+[[nodiscard]] inline side_waves waves_at(double f_Hz, double stiffness_s2, std::complex<double> gamma, double clamping = 0) {
   const double w = 2 * std::numbers::pi * f_Hz, G = rosin::force_factor(w, stiffness_s2), wave = wave_impedance_ratio(w, stiffness_s2);
   const double rho = near_field_ratio(w, stiffness_s2), bent = w > 0 ? phase_rate(w, stiffness_s2) * rho * stiffness_ratio(w, stiffness_s2) / (w * G) : 0;
-  return {w, gamma, wave, G, {0, -rho / (2 * wave * G)}, {0, bent}};
+  const double ahead = clamping > 0 && stiffness_s2 > 0 ? phase_ahead(phase_rate(w, stiffness_s2), stiffness_s2, clamping) : 0;
+  return {w, gamma, wave, G, {0, -rho / (2 * wave * G)}, {0, bent}, ahead, 1 / (std::cos(ahead) + rho * std::sin(ahead))};
 }
 
 /// What every load nearer than `place_s` returns, outwards from the end; F and Z V at the end.
@@ -48,7 +54,7 @@ struct side_waves {
   std::vector<std::pair<double, std::complex<double>>> returned;
   for (const auto& [place, load] : loads) {
     if (place >= place_s) break;
-    std::complex<double> zv = force * std::sinh(s.gamma * place) / s.impedance_ratio + moved * std::cosh(s.gamma * place);
+    std::complex<double> zv = force * s.sinh(place) / s.impedance_ratio + moved * std::cosh(s.gamma * place);
     for (const auto& [before, g] : returned) zv -= g * std::sinh(s.gamma * (place - before)) / (s.force_factor * s.impedance_ratio);
     const std::complex<double> z = load.impedance({0, s.omega});
     returned.emplace_back(place, -z * zv / (1.0 + z * s.dent));
@@ -74,6 +80,7 @@ struct side_waves {
 struct string_side {
   std::vector<detail::load_on_side> loads{};
   std::vector<admittance_mode> end_modes{};
+  double clamping = 0;  ///< of the end: for waves_at()
 
   /// Z_w v and f / G, per newton on the end.
   struct state {
@@ -81,7 +88,7 @@ struct string_side {
   };
   [[nodiscard]] state at(double place_s, const detail::side_waves& s) const {
     const std::complex<double> sinh = std::sinh(s.gamma * place_s), cosh = std::cosh(s.gamma * place_s);
-    state out{sinh, cosh};
+    state out{s.sinh(place_s), s.cosh(place_s)};
     std::complex<double> moved = 0;
     for (const admittance_mode& m : end_modes) moved += m({0, s.omega});
     const std::complex<double> lead = moved * (s.impedance_ratio / s.force_factor), bent = moved * s.bent;
@@ -95,10 +102,10 @@ struct string_side {
   }
 };
 
-/// Both sides of a contact on a scene's string. Modes of the ends count, nothing else of them, as in loaded_motion.hpp.
+/// Both sides of a contact on a scene's string. Of the ends modes and clamping count, nothing else, as in loaded_motion.hpp.
 [[nodiscard]] inline std::array<string_side, 2> sides_of(const pluck_scene& scene, const std::array<double, 2>& delay_s) {
   auto loads = detail::loads_by_side(scene.scatterers, delay_s);
-  return {string_side{std::move(loads[0]), scene.ends[0].modes}, string_side{std::move(loads[1]), scene.ends[1].modes}};
+  return {string_side{std::move(loads[0]), scene.ends[0].modes, scene.ends[0].clamping}, string_side{std::move(loads[1]), scene.ends[1].modes, scene.ends[1].clamping}};
 }
 
 }  // namespace rosin

@@ -127,10 +127,10 @@ private:
     const double a = take_.delay_s[0] - d, b = take_.delay_s[1] - d;
     const complex cosh_d = std::cosh(g * d), sinh_d = std::sinh(g * d), tanh_d = sinh_d * std::conj(cosh_d) / (std::norm(cosh_d) + pole_width * pole_width);
     const auto rolls = torsion(f);
-    const auto waves = detail::waves_at(f, eps, g);
     std::array<complex, 8> out;
     for (const std::size_t side : {0U, 1U}) {
       const double own = side == 0 ? a : b, sign = side == 0 ? 1 : -1;
+      const auto waves = detail::waves_at(f, eps, g, take_.sides[side].clamping);
       const auto here = take_.sides[side].at(own, waves);
       const complex v = here.velocity / Z, c = here.force, sum = waves.force_factor * (c + tanh_d * Z * v);
       const complex difference = d > 0 ? waves.force_factor * sign * (c + Z * v * cosh_d * std::conj(sinh_d) / (std::norm(sinh_d) + 1e-12)) : complex(0);

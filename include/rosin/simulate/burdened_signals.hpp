@@ -26,12 +26,12 @@ struct rig_burden {
 
   /// An ideal rig: nothing of all this.
   [[nodiscard]] bool none() const noexcept {
-    const auto& [loads, supports, ends, axial, sensed, stop] = string;
+    const auto& [loads, supports, ends, axial, sensed, stop, clamping] = string;
     const auto& s = sensors;
     bool any = !loads.empty() || axial != 0 || stop.stiffness_N_m > 0 || rod.mass_kg > 0 || pluck_width_m > 0 || contact_width_m > 0 || coupling != 0 || s.crosstalk != 0 ||
                s.skew_s != 0 || s.clock_drift != 0;
     for (std::size_t e = 0; e < 2; ++e)
-      any = any || supports[e].mass_kg > 0 || !ends[e].modes.empty() || sensed[e] != 0 || s.quadratic_per_N[e] != 0 || s.resonance_Hz[e] > 0;
+      any = any || clamping[e] != 0 || supports[e].mass_kg > 0 || !ends[e].modes.empty() || sensed[e] != 0 || s.quadratic_per_N[e] != 0 || s.resonance_Hz[e] > 0;
     return !any;
   }
 };
@@ -51,6 +51,12 @@ namespace detail {
   for (const auto& [width_m, what] : {std::pair{b.contact_width_m, "contact"}, {b.pluck_width_m, "wire"}})
     if (const double half = width_m / rig.string.length_m / 2; !(width_m >= 0 && half < position && half < 1 - position))
       return std::string{what} + ": wider than the string has room for";
+  for (const double clamping : b.string.clamping) {
+    if (!(clamping >= 0 && clamping <= 1)) return "clamped end: the clamping must lie between 0 and 1";
+    if (clamping > 0 && (b.string.axial_stiffness_N > 0 || std::any_of(b.string.supports.begin(), b.string.supports.end(), [](const auto& s) { return s.mass_kg > 0; }) ||
+                         std::any_of(b.string.ends.begin(), b.string.ends.end(), [](const auto& m) { return !m.modes.empty(); })))
+      return "clamped end: not together with ends that move or a tension that motion raises";
+  }
   if (!(std::abs(b.sensors.clock_drift) <= 0.01)) return "clock: 0.01 off at most";
   if (!(b.coupling > -1 && b.detuning > -1)) return "second plane: coupling and detuning must be above -1";
   return {};

@@ -14,6 +14,8 @@
 //     load:   f + alpha v(f, g) = -beta,    alpha = 3 M / 2h + R + K h / 2,    v' = (3 v - 4 v_0 + v_-1) / 2h
 //     end:    D g + F_end(f, g) = r         (moving_support.hpp).
 //
+// Ends that resist turning (`clamping`) have the modes of modal_string.hpp instead of the sines.
+//
 // Nothing here is shared with the closed forms that a diagnosis fits.
 //
 #pragma once
@@ -47,6 +49,7 @@ struct string_burden {
   double axial_stiffness_N = 0;                ///< E A; 0: the tension is steady
   std::array<double, 2> sensed_stiffness_N{};  ///< what near and far sensor read per unit of the string's strain
   obstacle stop{};                             ///< in the way of plucks
+  std::array<double, 2> clamping{};            ///< of near and far end against turning, 0 to 1 (modal_string.hpp): on ends that do not move, with a steady tension
 };
 
 class burdened_string {
@@ -54,7 +57,7 @@ public:
   /// Forces may act on the string at `contacts` (distance from the near end / length).
   burdened_string(const modal_rig& rig, const string_burden& burden, const std::vector<double>& contacts, double mode_limit_Hz, double step_s)
       : stretch_{rig.string.tension_N / rig.string.length_m}, step_{step_s}, contacts_{static_cast<int>(contacts.size())},
-        bank_{rig, burden.axial_stiffness_N, mode_limit_Hz, step_s}, positions_{contacts}, sensed_N_{burden.sensed_stiffness_N[0], burden.sensed_stiffness_N[1]} {
+        clamping_{burden.clamping}, limit_Hz_{mode_limit_Hz}, bank_{rig, burden.axial_stiffness_N, mode_limit_Hz, step_s, burden.clamping}, positions_{contacts}, sensed_N_{burden.sensed_stiffness_N[0], burden.sensed_stiffness_N[1]} {
     for (const auto& load : burden.loads) loads_.push_back({load}), positions_.push_back(load.position);
     for (int e = 0; e < 2; ++e) add_end(burden, e, rig.string.impedance_Ns_m());
     set_ports(rig);
@@ -189,8 +192,10 @@ private:
     rest_ = Eigen::VectorXd::Zero(p), rest_twist_ = rest_, rest_end_ = -bank_.share;
     for (int j = 0; j < p; ++j) {
       const double x = positions_[static_cast<std::size_t>(j)];
-      rest_end_.col(j) += Eigen::Vector2d{1 - x, x};
-      rest_[j] = static_compliance_m_N(rig.string, x) - bank_.compliance(j, j);
+      const auto held = static_end_forces(rig.string, x, clamping_);
+      rest_end_.col(j) += Eigen::Vector2d{held[0], held[1]};
+      rest_[j] = clamping_ == std::array<double, 2>{} ? static_compliance_m_N(rig.string, x) - bank_.compliance(j, j)
+                                                      : residual_compliance_m_N(rig.string, x, limit_Hz_);  // so high, no end is heard
       if (j >= contacts_ || !rig.torsion.present()) continue;
       rest_twist_[j] = x * (1 - x) / (rig.torsion.impedance_ratio * rig.torsion.speed_ratio * stretch_) - bank_.twist_compliance(j, j);
       rest_[j] += rest_twist_[j];
@@ -279,6 +284,8 @@ private:
 
   double stretch_, step_;
   int contacts_;
+  std::array<double, 2> clamping_;
+  double limit_Hz_;
   port_bank bank_;
   std::vector<double> positions_;
   std::vector<moving_load> loads_;

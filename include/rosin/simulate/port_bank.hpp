@@ -19,26 +19,27 @@ namespace rosin {
 
 class port_bank {
 public:
-  port_bank(const modal_rig& rig, double axial_stiffness_N, double limit_Hz, double step_s)
+  /// `clamping`: of the ends (modal_string.hpp).
+  port_bank(const modal_rig& rig, double axial_stiffness_N, double limit_Hz, double step_s, const std::array<double, 2>& clamping = {})
       : length_{rig.string.length_m}, axial_{axial_stiffness_N}, step_{step_s} {
-    auto modes = transverse_modes(rig.string, limit_Hz);
-    transverse_ = static_cast<Eigen::Index>(modes.size());
+    modes_ = transverse_modes(rig.string, limit_Hz, clamping);
+    transverse_ = static_cast<Eigen::Index>(modes_.size());
     const auto turning = torsional_modes(rig, limit_Hz);
-    modes.insert(modes.end(), turning.begin(), turning.end());
-    const auto n = static_cast<Eigen::Index>(modes.size());
+    modes_.insert(modes_.end(), turning.begin(), turning.end());
+    const auto n = static_cast<Eigen::Index>(modes_.size());
     for (auto* a : {&mass, &omega, &number, &re_, &im_, &own_, &turn_re_, &turn_im_, &push_re_, &push_im_, &once_re_, &once_im_, &q_re_, &q_im_, &k_, &felt_, &now_re_, &now_im_, &drive_}) a->setZero(n);
     end_.setZero(n, 2), end_damping_.setZero(n);
-    for (Eigen::Index i = 0; i < n; ++i) set_mode(i, modes[static_cast<std::size_t>(i)], rig.damping == damping_convention::kelvin_voigt && i < transverse_);
+    for (Eigen::Index i = 0; i < n; ++i) set_mode(i, modes_[static_cast<std::size_t>(i)], rig.damping == damping_convention::kelvin_voigt && i < transverse_);
   }
 
   Eigen::ArrayXd mass, omega, number;  ///< of every mode, transverse first
 
   [[nodiscard]] Eigen::Index size() const noexcept { return mass.size(); }
   [[nodiscard]] Eigen::Index transverse() const noexcept { return transverse_; }
-  /// sin(k_n x) of all modes, or of the transverse ones alone.
+  /// The shapes of all modes, or of the transverse ones alone: sin(k_n x) between pinned ends.
   [[nodiscard]] Eigen::VectorXd at(double position, bool turns) const {
     Eigen::VectorXd s = Eigen::VectorXd::Zero(size());
-    for (Eigen::Index i = 0; i < (turns ? size() : transverse_); ++i) s[i] = std::sin(pi * std::fmod(number[i] * position, 2.0));
+    for (Eigen::Index i = 0; i < (turns ? size() : transverse_); ++i) s[i] = modes_[static_cast<std::size_t>(i)].shape(position);
     return s;
   }
   /// Inertia that an end lends to the transverse modes when it moves: the integral of mu (1 - x/L) sin, or of mu (x/L) sin.
@@ -127,7 +128,7 @@ private:
     push_re_[i] = push.real(), push_im_[i] = push.imag();
     once_re_[i] = once.real(), once_im_[i] = once.imag();
     q_re_[i] = p.real() / (m.omega_rad_s * m.omega_rad_s), q_im_[i] = p.imag() / (m.omega_rad_s * m.omega_rad_s);
-    end_(i, 0) = m.end_stiffness_N_m, end_(i, 1) = m.parity() * m.end_stiffness_N_m;
+    end_(i, 0) = m.end_stiffness_N_m, end_(i, 1) = m.parity() * m.far_over_near * m.end_stiffness_N_m;
     end_damping_[i] = in_stress ? m.inverse_quality / m.omega_rad_s : 0;
     felt_[i] = q_re_[i] + end_damping_[i];
   }
@@ -142,6 +143,7 @@ private:
   }
 
   double length_, axial_, step_, raised_ = 0, across_ = 0;
+  std::vector<string_mode> modes_;
   Eigen::Index transverse_ = 0;
   Eigen::ArrayXd re_, im_, own_, turn_re_, turn_im_, push_re_, push_im_, once_re_, once_im_, q_re_, q_im_, k_, end_damping_, felt_, now_re_, now_im_, drive_;
   Eigen::MatrixXd shape_, end_;

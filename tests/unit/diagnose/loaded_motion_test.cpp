@@ -58,3 +58,18 @@ TEST_CASE("the force under the bow of a string with beads, a finger and a suppor
     CHECK(knowing[i] < 1.3 * reference[i] + 0.0004);
   }
 }
+
+TEST_CASE("the force under the bow of a string whose ends resist turning, with a bead on it, as right as that of one between knife edges") {
+  const double z = rig.string.impedance_Ns_m();
+  rosin::pluck_scene clamped;
+  rosin::string_burden burden{.loads = {{.position = 0.12, .mass_kg = 4e-6}}, .clamping = {1, 0.6}};
+  clamped.scatterers = {{.position = 0.12, .mass_s = 4e-6 / z}};
+  auto pinned = clamped;
+  for (std::size_t e = 0; e < 2; ++e) clamped.ends[e].clamping = burden.clamping[e];
+  const auto reference = errors({}, {}), blind = errors(burden, pinned), knowing = errors(burden, clamped);
+  INFO("pinned ", reference[0], " ", reference[1], ", taken for pinned ", blind[0], " ", blind[1], ", as it is ", knowing[0], " ", knowing[1]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(blind[i] > 0.03);
+    CHECK(knowing[i] < 1.3 * reference[i] + 0.0004);
+  }
+}

@@ -16,7 +16,7 @@ rosin::outcome<rosin::pluck_diagnosis> look(const std::vector<rosin::pluck_take>
     const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};
     auto all = rosin::catalogue_without({"bending-stiffness"}, facts, fit.limits);
     // Scans over frequency and place, and searches for poles, are what takes long; here they are not what is tested.
-    std::erase_if(all, [](const rosin::pluck_effect& e) { return e.starts.size() > 20 || e.at_end || e.strength < -1; });
+    std::erase_if(all, [](const rosin::pluck_effect& e) { return e.starts.size() > 20 || (e.at_end && e.name != "clamped-end") || e.strength < -1; });
     return all;
   });
 }
@@ -127,5 +127,30 @@ TEST_CASE("ends that are known to move are part of the declared model: nothing i
     CHECK(d->after < 1.2 * d->floor);
     if (slow > 0) CHECK(d->best.effects[0].id() == "slow-release");
     CHECK(d->data.layout.ends(d->best.value)[1].modes[0].frequency_Hz == doctest::Approx(2400).epsilon(3e-4));
+  }
+}
+
+TEST_CASE("ends that hold the string against turning are told from a shorter or stiffer string: one of them, both, and how firmly") {
+  for (const auto& [clamping, id] : {std::pair{std::array{1.0, 1.0}, "clamped-end both"}, {std::array{0.0, 0.5}, "clamped-end@far"}}) {
+    CAPTURE(id);
+    auto rig = test::plucked_rig;
+    rig.string.bending_stiffness_Nm2 *= 3;
+    rosin::rig_burden burden;
+    burden.string.clamping = clamping;
+    const auto pluck = [&](double force_N, std::uint64_t seed) {
+      const auto made = rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.06});
+      REQUIRE_MESSAGE(made, made.error());
+      return test::recorded(*made, force_N, seed);
+    };
+    const auto d = look({pluck(1, 1), pluck(0.5, 2)}, pluck(0.75, 3));
+    REQUIRE_MESSAGE(d, d.error());
+    CHECK(d->explained);
+    CHECK(d->before > 1.5 * d->floor);
+    CHECK(d->after < 1.2 * d->floor);
+    REQUIRE(d->best.effects.size() == 1);
+    CHECK(d->best.effects[0].id() == id);
+    const auto at = d->data.layout.size();
+    CHECK(std::abs(d->best.value[at] - clamping[1]) < 3 * d->best.sd[at] + 1e-6);
+    CHECK(d->best.sd[at] < 0.25);
   }
 }

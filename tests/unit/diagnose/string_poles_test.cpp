@@ -11,6 +11,36 @@ rosin::pluck_scene scene() {
   return s;
 }
 
+/// One mode of a stiff string whose ends resist turning, sin(q x - a) + sin(a) exp(-k x) from either end: L = 1, T = 1, c = 1.
+struct clamped_mode {
+  double omega = 0;
+  std::array<double, 2> force{};  ///< on the ends, for a pluck of 1 N
+};
+clamped_mode mode_between(const std::array<double, 2>& clamping, int n, double B, double x) {
+  constexpr double pi = std::numbers::pi;
+  double q = n * pi, kappa = 0;
+  std::array<double, 2> a{};
+  for (int i = 0; i < 200; ++i) {
+    kappa = std::sqrt(q * q + 1 / B);
+    for (std::size_t e = 0; e < 2; ++e) {
+      const double spring = clamping[e] * std::sqrt(B), free = (1 - clamping[e]) * B * (q * q + kappa * kappa);  // B y'' = spring y'
+      a[e] = std::atan2(spring * q, free + spring * kappa);
+    }
+    q = n * pi + a[0] + a[1];
+  }
+  const double parity = n % 2 == 1 ? 1 : -1, w2 = q * q + B * q * q * q * q;
+  double mass = 0;
+  const int points = 400 * n + 4000;
+  const auto shape = [&](double z) { return std::sin(q * z - a[0]) + std::sin(a[0]) * std::exp(-kappa * z) + parity * std::sin(a[1]) * std::exp(-kappa * (1 - z)); };
+  for (int i = 0; i < points; ++i) mass += std::pow(shape((i + 0.5) / points), 2) / points;
+  clamped_mode out{std::sqrt(w2), {}};
+  for (std::size_t e = 0; e < 2; ++e) {
+    const double slope = q * std::cos(a[e]) - kappa * std::sin(a[e]), shear = -q * q * q * std::cos(a[e]) - kappa * kappa * kappa * std::sin(a[e]);
+    out.force[e] = (e == 0 ? 1 : parity) * (slope - B * shear) * shape(x) / (mass * w2);
+  }
+  return out;
+}
+
 }  // namespace
 
 TEST_CASE("without anything on it the string has its own poles, with the residues of a pluck") {
@@ -73,4 +103,32 @@ TEST_CASE("from poles nearby the search comes to the same end") {
   const auto warm = rosin::string_poles(with, 40e3, 200, near), cold = rosin::string_poles(with, 40e3, 200);
   REQUIRE(warm.size() == cold.size());
   for (std::size_t i = 0; i < warm.size(); ++i) CHECK(std::abs(warm[i] - cold[i]) < 1e-3);
+}
+
+TEST_CASE("a string whose ends resist turning has the modes of the beam under tension: sin(q x - a) with a near field, q L = n pi + a + a'") {
+  for (const auto& clamping : {std::array{1.0, 1.0}, std::array{1.0, 0.0}, std::array{0.0, 0.6}, std::array{0.3, 1.0}}) {
+    rosin::pluck_scene s;
+    s.string = {0.5, 4e-6 * std::numbers::pi * std::numbers::pi, {1e7, 0, 0}, 0};  // one second there and one back
+    for (std::size_t e = 0; e < 2; ++e) s.ends[e].clamping = clamping[e];
+    const auto lines = rosin::decay_lines(s, 0.27, rosin::string_poles(s, 60, 500));
+    REQUIRE(lines.size() > 80);
+    for (std::size_t i = 0; i < 80; i += 7) {
+      const auto mode = mode_between(clamping, static_cast<int>(i) + 1, 4e-6, 0.27);
+      CHECK(lines[i].pole.imag() == doctest::Approx(mode.omega).epsilon(1e-7));
+      for (std::size_t e = 0; e < 2; ++e) CHECK(lines[i].residue[e].real() == doctest::Approx(mode.force[e]).epsilon(1e-5).scale(0.01));
+    }
+  }
+}
+
+TEST_CASE("while the wire holds a clamped string its ends share the force as those of a shorter one") {
+  rosin::pluck_scene s;
+  s.string = {0.5, 4e-6 * std::numbers::pi * std::numbers::pi, {1e7, 0, 0}, 0};
+  s.ends[0].clamping = 1, s.ends[1].clamping = 0.5;
+  std::array<double, 2> sum{};
+  for (int n = 1; n < 3000; ++n) {
+    const auto mode = mode_between({1, 0.5}, n, 4e-6, 0.27);
+    for (std::size_t e = 0; e < 2; ++e) sum[e] += mode.force[e] * std::pow(std::sin(n * std::numbers::pi / 3000) / (n * std::numbers::pi / 3000), 2);
+  }
+  const auto held = rosin::held_forces(s, 0.27);
+  for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-5));
 }

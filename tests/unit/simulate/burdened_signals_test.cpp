@@ -145,6 +145,10 @@ TEST_CASE("what cannot be is refused") {
   says(b, "termination");
   b = {}, b.string.supports[1] = {0.001, 0, 10};
   says(b, "support");
+  b = {}, b.string.clamping[0] = 1.5;
+  says(b, "clamped end: the clamping");
+  b = {}, b.string.clamping[0] = 1, b.string.axial_stiffness_N = 1e4;
+  says(b, "not together");
   b = {}, b.contact_width_m = 0.5;
   says(b, "wider");
   b = {}, b.pluck_width_m = 0.5;
