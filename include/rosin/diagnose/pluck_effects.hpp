@@ -109,20 +109,25 @@ inline pluck_effect massive_end_effect(const string_facts& f, int end) {
 }
 
 /// An end that holds the string against turning (a knife's edge does not, a vice does), or both alike (`end` -1). For slow motion the string is but
-/// shorter: pitch, stiffness and place go along.
+/// shorter, for less slow motion less stiff, since with d = sqrt(B / T), c for the clamping and q for the wave number
+///
+///     phase ahead = c (q d) - (2 c - 3/2 c^2 + 1/3 c^3) (q d)^3 + ...
+///
+/// so that pitch, stiffness and place go along.
 inline pluck_effect clamped_end_effect(const string_facts&, int end) {
-  pluck_effect e{"clamped-end", end, true, {{"clamping", 0, 1, 1e-6}}, {{0.3}, {1.0}}, 0, [end](pluck_scene& s, const double* v, int) {
+  pluck_effect e{"clamped-end", end, true, {{"clamping", 0, 1, 1e-6}}, {{0.2}, {0.45}, {0.7}, {1.0}}, 0, [end](pluck_scene& s, const double* v, int) {
                    for (int side = 0; side < 2; ++side)
                      if (double& clamping = s.ends[static_cast<std::size_t>(side)].clamping; end < 0 || side == end) clamping = std::min(1.0, clamping + v[0]);
                  }};
   e.rebase = [end](const pluck_layout& layout, Eigen::VectorXd& v) {
-    const double less = shortened_by(layout.string(v), v[v.size() - 1]), whole = 1 / (1 + (end < 0 ? 2 : 1) * less);  // of the old length, of the new
+    const double c = v[v.size() - 1], reach = shortened_by(layout.string(v), 1), ends = end < 0 ? 2 : 1;  // of the old length
+    const double less = c * reach, whole = 1 / (1 + ends * less), softer = 2 * ends * reach * c * (2 - c * (1.5 - c / 3));
     v[pluck_layout::fundamental] *= whole;
     for (std::size_t p = 0; p < layout.positions().size(); ++p) {
       double& x = v[pluck_layout::first_position + static_cast<Eigen::Index>(p)];
       x = (x + (end == 1 ? 0 : less)) * whole;
     }
-    v[pluck_layout::inharmonicity] *= whole * whole;
+    v[pluck_layout::inharmonicity] *= whole * whole * (1 + softer);
   };
   if (end < 0) e.variant = "both";
   return e;
