@@ -9,4 +9,7 @@ case $preset in
   dev | *clang) .ci/install-packages clang ;;
   *) .ci/install-packages ;;
 esac
+# A folder that another compiler has begun would lose its settings.
+cache=build/dev/CMakeCache.txt
+if [ "$preset" = dev ] && [ -e "$cache" ] && ! grep -q '^CMAKE_CXX_COMPILER:.*clang' "$cache"; then rm -rf build/dev; fi
 cmake --workflow --preset "$preset"

@@ -40,7 +40,7 @@ hidden_effect held_against_turning(challenge_rig& r, source& s, double k) {
   const double clamping = std::min(1.0, k * s.uniform(0.4, 1.2));
   r.burden.clamping[e] = clamping;
   if (both) r.burden.clamping[1 - e] = clamping;
-  return {{}, both ? std::string{} : name_of_side(e), "", {{"clamping", clamping}}};
+  return {{}, both ? "both" : name_of_side(e), "", {{"clamping", clamping}}};
 }
 
 /// Of the air's boundary layer.

@@ -26,7 +26,8 @@ void score_parameters(const std::string& effect, const json& truth, const json& 
     if (value.is_string()) {
       s.has_place = true;
       const auto& where = said.at("where");
-      if (!where.contains(name) || where.at(name) != value) s.place_right = false;
+      const bool right = value == "both" ? !where.contains(name) : where.contains(name) && where.at(name) == value;
+      if (!right) s.place_right = false;
       continue;
     }
     if (!estimates.contains(name)) continue;

@@ -30,7 +30,7 @@ missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, con
   m.probability = others > 0 ? 1 / (1 + others) : 1 - std::exp(-std::min(30.0, p.found_gain[which]));
   if (last)
     for (const auto& id : p.alternatives) {
-      const std::string name = id.substr(0, id.find('@'));
+      const std::string name = id.substr(0, id.find_first_of("@ "));
       if (name != e.name && std::find(m.indistinguishable_from.begin(), m.indistinguishable_from.end(), name) == m.indistinguishable_from.end())
         m.indistinguishable_from.push_back(name);
     }
@@ -61,7 +61,7 @@ missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, con
 
 std::vector<std::string> bare(const std::vector<std::string>& ids) {
   std::vector<std::string> out;
-  for (const auto& id : ids) out.push_back(id.substr(0, id.find('@')));
+  for (const auto& id : ids) out.push_back(id.substr(0, id.find_first_of("@ ")));
   return out;
 }
 

@@ -103,7 +103,7 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
       for (double& f : *force) f += dc.level_N;
     const auto& delay = s.calibration.at.delay_s;
     for (std::size_t c = 0; c < 2; ++c)
-      for (double& f : s.force_N[c]) f += dc.level_N * rosin::static_forces(delay[0] / (delay[0] + delay[1]))[c];
+      for (double& f : s.force_N[c]) f += dc.level_N * rosin::held_forces(scene, delay[0] / (delay[0] + delay[1]))[c];
   }
 }
 

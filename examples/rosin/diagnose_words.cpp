@@ -48,6 +48,12 @@ diagnosed_value in_si(const std::string& name, double v, double sd, const rosin:
   if (name == "mass_kg" || name == "resistance_Ns_m") return with(name.c_str(), v, sd, e.impedance);
   if (name == "axial_stiffness_N") return with(name.c_str(), v, sd, e.axial);
   if (name == "sensed_axial_stiffness_N") return with(name.c_str(), v, sd, e.sensed);
+  if (name == "clamping") {  // what shows is flat where nothing turns, t^2/2 + t^3/3 with t = 1 - clamping: the interval is one of that
+    const double t = 1 - v, far = t * t * (0.5 + t / 3) + 1.96 * sd * t * (1 + t);
+    double low = std::max(t, std::sqrt(2 * far));
+    for (int i = 0; i < 30; ++i) low -= (low * low * (0.5 + low / 3) - far) / (low * (1 + low) + 1e-12);
+    return {name, v, std::isfinite(low) ? std::min(1.0, std::max(0.0, low - t) / 1.96) : sd};
+  }
   if (name == "gap_m") return with(name.c_str(), v, sd, std::hypot(e.scale, e.impedance));
   if (name == "quadratic_per_N" || name == "amplitude_N") return with(name.c_str(), v, sd, e.scale);
   return {name, v, sd};

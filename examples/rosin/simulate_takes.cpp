@@ -35,8 +35,12 @@ rosin::outcome<rosin::modal_take> happen(const simulation_plan& plan, const true
 /// From the velocity, by the trapezoidal rule; a pluck starts from its static deflection.
 samples displacement(const simulation_plan& plan, const true_take& take, const samples& velocity_m_s) {
   samples out(velocity_m_s.size());
+  const auto& clamping = plan.burden.string.clamping;  // a string that is held at its ends is a shorter one
+  const double reach = std::sqrt(plan.rig.string.bending_stiffness_Nm2 / plan.rig.string.tension_N) / plan.rig.string.length_m, whole = 1 - (clamping[0] + clamping[1]) * reach;
+  auto held = plan.rig.string;
+  held.length_m *= whole;
   const double start = take.declared.kind == take_kind::pluck
-                           ? take.pluck.force_N * rosin::static_compliance_m_N(plan.rig.string, take.position) : 0.0;
+                           ? take.pluck.force_N * rosin::static_compliance_m_N(held, (take.position - clamping[0] * reach) / whole) : 0.0;
   for (std::size_t n = 0; n < out.size(); ++n)
     out[n] = n == 0 ? start : out[n - 1] + (velocity_m_s[n - 1] + velocity_m_s[n]) / 2 / plan.settings.sample_rate_Hz;
   return out;

@@ -43,6 +43,7 @@ json ends_json(const simulation_plan& plan) {
     for (const auto& m : plan.burden.string.ends[e].modes) add(m.frequency_Hz, m.q, plan.rig.string.impedance_Ns_m() / m.per_mass_per_s);
     if (const auto& s = plan.burden.string.supports[e]; s.mass_kg > 0) add(s.frequency_Hz, s.quality, s.mass_kg);
     out[e == 0 ? "near" : "far"] = modes;
+    if (const double c = plan.burden.string.clamping[e]; c > 0) out[e == 0 ? "near_clamping" : "far_clamping"] = c;
   }
   return out;
 }

@@ -165,6 +165,7 @@ private:
       Eigen::VectorXd v(recordings.value().size() + static_cast<Eigen::Index>(starts[k].size()));
       v.head(recordings.value().size()) = recordings.value();
       for (std::size_t q = 0; q < starts[k].size(); ++q) v[recordings.value().size() + static_cast<Eigen::Index>(q)] = to_fitted(e.parameters[q], starts[k][q]);
+      if (e.rebase && !e.undo) e.rebase(recordings.layout(), v);
       Eigen::VectorXd d = e.undo ? recordings.undone(e, starts[k][0]) : Eigen::VectorXd(recordings.of({e}, v) - plain);
       const double whole = d.norm();
       d -= basis * (basis.transpose() * d);

@@ -107,7 +107,8 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
       const double wait_s = std::min(1.0, static_cast<double>(first) - released) / rate;
       const auto steps = static_cast<std::size_t>(std::ceil(120e3 / rate));  // half of them or twice as many: the same within 0.002 of what is taken out
       const auto run = [&](const ringing_string& string, double stretch) {
-        return stretching_pluck(string, v[layout.position(t)], newtons / tension, all, 400, {scene.detuning, scene.coupling}).run(stretch, wait_s, 1 / rate, stretch > 0 ? steps : 1, count);
+        const nearest_pinned pinned(scene, string);
+        return stretching_pluck(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension, all, 400, {scene.detuning, scene.coupling}).run(stretch, wait_s, 1 / rate, stretch > 0 ? steps : 1, count);
       };
       auto excess = run(slack, axial_N / (4 * tension)).force;
       const auto plain = run(mean, 0).force;
@@ -136,7 +137,8 @@ inline pluck_effect phantom_partials_effect(const string_facts& f, const band& l
       const std::size_t size = takes[t].force_N[0].size();
       const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate, newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
       const auto first = std::min(size, static_cast<std::size_t>(std::max(0.0, std::ceil(released))));
-      const stretching_pluck string(layout.string(v), v[layout.position(t)], newtons / tension, {limits.stop_Hz, limits.stop_Hz}, 120, {scene.detuning, scene.coupling});
+      const nearest_pinned pinned(scene, layout.string(v));
+      const stretching_pluck string(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension, {limits.stop_Hz, limits.stop_Hz}, 120, {scene.detuning, scene.coupling});
       const auto moves = string.run(0, std::min(1.0, static_cast<double>(first) - released) / rate, 1 / rate, 1, size - first);
       std::array<std::vector<double>, 2> felt{std::vector<double>(size), std::vector<double>(size)};
       auto& own = felt[static_cast<std::size_t>(channel)];

@@ -114,8 +114,8 @@ inline void seek_beginnings(const scene_data& data, const scene_fit& already, co
   for (std::size_t t = 1; t < problem.takes(); ++t)
     if (strength(t) > strength(strongest)) strongest = t;
   take_residual rest{residual_of(problem, already.value, strongest), problem.part(strongest, 1).begin_s, problem.rate_Hz(strongest), strongest, {}};
-  const ringing_string string = problem.model().string(already.value);
-  for (int n = 1; string.partial_Hz(n) < problem.limits().stop_Hz && n < 1000; ++n) rest.own_Hz.push_back(string.partial_Hz(n));
+  const pluck_scene scene = problem.model().scene(already.value, static_cast<int>(strongest));
+  for (int n = 1; scene.string.partial_Hz(n) < problem.limits().stop_Hz && n < 1000; ++n) rest.own_Hz.push_back(partial_between_clamps_Hz(scene, n));
   std::optional<pluck_score> test;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     pluck_effect e = catalogue[i];

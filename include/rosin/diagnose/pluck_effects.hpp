@@ -116,7 +116,7 @@ inline pluck_effect massive_end_effect(const string_facts& f, int end) {
 /// so that pitch, stiffness and place go along.
 inline pluck_effect clamped_end_effect(const string_facts&, int end) {
   pluck_effect e{"clamped-end", end, true, {{"clamping", 0, 1, 1e-6}}, {{0.2}, {0.45}, {0.7}, {1.0}}, 0, [end](pluck_scene& s, const double* v, int) {
-                   for (int side = 0; side < 2; ++side)
+                   for (int side = 0; side < 2 && s.string.inharmonicity > 0; ++side)
                      if (double& clamping = s.ends[static_cast<std::size_t>(side)].clamping; end < 0 || side == end) clamping = std::min(1.0, clamping + v[0]);
                  }};
   e.rebase = [end](const pluck_layout& layout, Eigen::VectorXd& v) {

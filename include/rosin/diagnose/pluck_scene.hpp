@@ -104,6 +104,24 @@ struct pluck_scene {
   return clamping * std::sqrt(std::max(0.0, string.stiffness_s2())) * 2 * string.fundamental_Hz;
 }
 
+/// The string between pinned ends that comes nearest to one whose ends resist turning, up to the third power of the frequency, and places on it.
+struct nearest_pinned {
+  ringing_string string;
+  double begin = 0, whole = 1;  ///< in lengths of the other
+
+  nearest_pinned(const pluck_scene& scene, const ringing_string& held) : string{held}, begin{shortened_by(held, scene.ends[0].clamping)} {
+    const double reach = shortened_by(held, 1);
+    double softer = 0;
+    for (const yielding_end& end : scene.ends) {
+      const double c = end.clamping;
+      whole -= c * reach, softer += 2 * reach * c * (2 - c * (1.5 - c / 3));
+    }
+    string.fundamental_Hz /= whole;
+    string.inharmonicity *= (1 - softer) / (whole * whole);
+  }
+  [[nodiscard]] double place(double position) const { return (position - begin) / whole; }
+};
+
 /// Forces on the ends while the wire holds the string with 1 N, near and far.
 [[nodiscard]] inline std::array<double, 2> held_forces(const pluck_scene& scene, double position) {
   const double near = shortened_by(scene.string, scene.ends[0].clamping), far = shortened_by(scene.string, scene.ends[1].clamping);

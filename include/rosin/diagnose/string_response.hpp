@@ -164,7 +164,7 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
   const clamped_ends clamped(scene);
   const auto count = static_cast<Eigen::Index>(scene.scatterers.size()), first = count + ends.count;
   for (Eigen::Index c = 0; c < clamped.count; ++c) {
-    const double clamping = strength * scene.ends[static_cast<std::size_t>(clamped[c])].clamping, k = clamping * string.reach_s();
+    const double clamping = scene.ends[static_cast<std::size_t>(clamped[c])].clamping, k = clamping * string.reach_s();
     const auto end_force = [&](Eigen::Index m) { return ends[m] == clamped[c] ? string.own_end_by_moment() : string.other_end_by_moment(); };
     for (Eigen::Index j = 0; j < count; ++j) {
       const scatterer& on = scene.scatterers[static_cast<std::size_t>(j)];
@@ -215,7 +215,7 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
 
 }  // namespace detail
 
-/// The closed loop's determinant at one frequency. `strength` scales scatterers and ends.
+/// The closed loop's determinant at one frequency. `strength` scales scatterers and the motion of the ends.
 [[nodiscard]] inline std::complex<double> loop_determinant(const pluck_scene& scene, std::complex<double> s, double strength = 1) {
   const string_at string(scene, s);
   return detail::determinant_of(detail::loop_of(scene, string, detail::moving_ends(scene), s, strength), string.sine());

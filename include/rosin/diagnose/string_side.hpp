@@ -9,6 +9,7 @@
 // r = (Z_w / Z) / G and b = q rho K / (w G) as in bow_point_transfer.hpp, x being the travel time from the end, g_i what the i-th load returns
 // (loaded_motion.hpp), and f G times what a constant impedance would make of the waves. A plain side is sinh and cosh. Where the end resists turning,
 // waves are ahead there by a phase a (pluck_scene.hpp), and the end feels 1 / h = cos a + (k / kappa) sin a of their force: h F sinh(gamma x - i a) for F sinh(gamma x).
+// One that moves as well is taken to answer V as a pinned end does: off by a share K of what V does.
 //
 #pragma once
 

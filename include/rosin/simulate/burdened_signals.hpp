@@ -53,9 +53,9 @@ namespace detail {
       return std::string{what} + ": wider than the string has room for";
   for (const double clamping : b.string.clamping) {
     if (!(clamping >= 0 && clamping <= 1)) return "clamped end: the clamping must lie between 0 and 1";
-    if (clamping > 0 && (b.string.axial_stiffness_N > 0 || std::any_of(b.string.supports.begin(), b.string.supports.end(), [](const auto& s) { return s.mass_kg > 0; }) ||
+    if (clamping > 0 && (b.string.axial_stiffness_N > 0 || b.string.sensed_stiffness_N != std::array<double, 2>{} || std::any_of(b.string.supports.begin(), b.string.supports.end(), [](const auto& s) { return s.mass_kg > 0; }) ||
                          std::any_of(b.string.ends.begin(), b.string.ends.end(), [](const auto& m) { return !m.modes.empty(); })))
-      return "clamped end: not together with ends that move or a tension that motion raises";
+      return "clamped end: not together with ends that move, a tension that motion raises, or a sensor that feels the tension";
   }
   if (!(std::abs(b.sensors.clock_drift) <= 0.01)) return "clock: 0.01 off at most";
   if (!(b.coupling > -1 && b.detuning > -1)) return "second plane: coupling and detuning must be above -1";

@@ -132,3 +132,23 @@ TEST_CASE("while the wire holds a clamped string its ends share the force as tho
   const auto held = rosin::held_forces(s, 0.27);
   for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-5));
 }
+
+TEST_CASE("no partial of a clamped string is lost, whatever else is there, to where one was half a spacing away from where a pinned one has it") {
+  for (const int what : {0, 1, 2, 3}) {
+    CAPTURE(what);
+    rosin::pluck_scene s;
+    s.string = {196, 1e-4, {1000, 0, 0}, 0};
+    for (auto& end : s.ends) end.clamping = 1;
+    const double top = 2 * std::numbers::pi * 40e3;
+    const auto alone = rosin::string_poles(s, 40e3, 500);
+    if (what == 0) s.scatterers = {{.position = 0.42, .mass_s = 1e-5}};
+    if (what == 1) s.scatterers = {{.position = 0.42, .resistance = 0.02}};
+    if (what == 2) s.ends[0].conductance = 0.002;
+    if (what == 3) s.ends[1].modes = {{.frequency_Hz = 2485, .q = 10.6, .per_mass_per_s = 30}};
+    const auto poles = rosin::string_poles(s, 40e3, 500);
+    CHECK(poles.size() == alone.size() + (what == 3 ? 1 : 0));
+    const double spacing = alone.back().imag() - alone[alone.size() - 2].imag();
+    CHECK(poles.back().imag() > top - 1.6 * spacing);
+    for (std::size_t i = 1; i < poles.size(); ++i) CHECK(poles[i].imag() - poles[i - 1].imag() < 1.5 * spacing);
+  }
+}
