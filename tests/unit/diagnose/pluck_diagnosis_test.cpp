@@ -131,12 +131,16 @@ TEST_CASE("ends that are known to move are part of the declared model: nothing i
 }
 
 TEST_CASE("ends that hold the string against turning are told from a shorter or stiffer string: one of them, both, and how firmly") {
-  for (const auto& [clamping, id] : {std::pair{std::array{1.0, 1.0}, "clamped-end both"}, {std::array{0.0, 0.5}, "clamped-end@far"}}) {
-    CAPTURE(id);
+  struct clamped {
+    std::array<double, 2> clamping;
+    std::string id;
+  };
+  for (const clamped& c : {clamped{{1, 1}, "clamped-end both"}, {{0, 0.5}, "clamped-end@far"}}) {
+    CAPTURE(c.id);
     auto rig = test::plucked_rig;
     rig.string.bending_stiffness_Nm2 *= 3;
     rosin::rig_burden burden;
-    burden.string.clamping = clamping;
+    burden.string.clamping = c.clamping;
     const auto pluck = [&](double force_N, std::uint64_t seed) {
       const auto made = rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.06});
       REQUIRE_MESSAGE(made, made.error());
@@ -148,9 +152,9 @@ TEST_CASE("ends that hold the string against turning are told from a shorter or 
     CHECK(d->before > 1.5 * d->floor);
     CHECK(d->after < 1.2 * d->floor);
     REQUIRE(d->best.effects.size() == 1);
-    CHECK(d->best.effects[0].id() == id);
+    CHECK(d->best.effects[0].id() == c.id);
     const auto at = d->data.layout.size();
-    CHECK(std::abs(d->best.value[at] - clamping[1]) < 3 * d->best.sd[at] + 1e-6);
+    CHECK(std::abs(d->best.value[at] - c.clamping[1]) < 3 * d->best.sd[at] + 1e-6);
     CHECK(d->best.sd[at] < 0.25);
   }
 }
