@@ -80,7 +80,6 @@ void refuse_takes(const rosin::rig& rig, double duration_s, rosin::problem_log& 
     if (take.kind == take_kind::pluck && !take.force_N) bad("force_N", "is missing: a simulation has to know the force");
     if (take.kind == take_kind::bow && !take.speed_m_s && take.speed_profile_m_s.empty()) bad("speed_m_s", "is missing, and there is no profile");
     if (take.kind == take_kind::bow && !take.normal_force_N && take.normal_force_profile_N.empty()) bad("normal_force_N", "is missing, and there is no profile");
-    if (!take.position_profile.empty() && (has_modes(rig.near) || has_modes(rig.far))) bad("position_profile", "a bow that travels cannot be simulated where [terminations] move");
     if (take.start_s && !take.speed_profile_m_s.empty()) bad("start_s", "stands beside speed_profile_m_s, whose times count from the first sample");
     if (take.start_s.value_or(usual_release_s) >= duration_s) bad("start_s", "the take ends before; see [simulate] duration_s");
     if (take.kind == take_kind::pluck && take.start_s && !(*take.start_s > 0)) bad("start_s", "the wire has to hold the string at the first sample");

@@ -3,6 +3,8 @@
 
 #include "progress.hpp"
 
+#include <rosin/simulate/wave_stroke.hpp>
+
 namespace tool {
 
 namespace {
@@ -13,14 +15,26 @@ using samples = std::vector<double>;
 
 constexpr double loudest_share = 0.7;
 
+/// A bow that travels on a string whose ends move, and nothing else: by waves, since the modes of such a string stand at fixed places.
+rosin::outcome<rosin::modal_take> travel_on_moving_ends(const simulation_plan& plan, const true_take& take, const rosin::modal_rig& rig) {
+  auto rest = plan.burden;
+  rest.string.ends = {};
+  if (!rest.none()) return rosin::failure{"position_profile: a bow that travels can be simulated on ends that move, on nothing else that a model adds"};
+  const auto& s = plan.settings;
+  const rosin::wave_settings settings{.sample_rate_Hz = s.sample_rate_Hz, .oversampling = s.oversampling, .pass_Hz = s.pass_Hz, .stop_Hz = s.stop_Hz, .ripple = s.ripple};
+  return std::visit(
+      [&](const auto& law) { return rosin::simulate_wave_stroke(rig, law, take.rod, {.position = take.position, .duration_s = plan.duration_s}, settings, plan.burden.string.ends); },
+      plan.friction.law);
+}
+
 rosin::outcome<rosin::modal_take> happen(const simulation_plan& plan, const true_take& take) {
   const bool plain = plan.burden.none();
   if (take.declared.kind == take_kind::pluck)
     return plain ? rosin::simulate_pluck(plan.rig, take.pluck, plan.settings) : rosin::simulate_pluck(plan.rig, plan.burden, take.pluck, plan.settings);
   if (take.declared.kind == take_kind::bow) {
     const rosin::modal_stroke stroke{.position = take.position, .duration_s = plan.duration_s, .account = true};
-    if (!plain && take.rod.travels()) return rosin::failure{"position_profile: a bow that travels cannot be simulated on a string that carries or ends on anything"};
     const auto rig = stretched(plan.rig, plan.tension_drift);
+    if (!plain && take.rod.travels()) return travel_on_moving_ends(plan, take, rig);
     return std::visit(
         [&](const auto& law) {
           return plain ? rosin::simulate_stroke(rig, law, take.rod, stroke, plan.settings)

@@ -134,7 +134,6 @@
 #include <rosin/simulate/burdened_take.hpp>
 #include <rosin/simulate/converter.hpp>
 #include <rosin/simulate/energy_account.hpp>
-#include <rosin/simulate/mode_step.hpp>
 #include <rosin/simulate/modal_bank.hpp>
 #include <rosin/simulate/modal_contact.hpp>
 #include <rosin/simulate/modal_decimator.hpp>
@@ -143,6 +142,7 @@
 #include <rosin/simulate/modal_string.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 #include <rosin/simulate/modal_take.hpp>
+#include <rosin/simulate/mode_step.hpp>
 #include <rosin/simulate/moving_support.hpp>
 #include <rosin/simulate/point_modes.hpp>
 #include <rosin/simulate/port_bank.hpp>
@@ -150,6 +150,8 @@
 #include <rosin/simulate/random_rig.hpp>
 #include <rosin/simulate/regime.hpp>
 #include <rosin/simulate/stroke_energy.hpp>
+#include <rosin/simulate/travelling_design.hpp>
+#include <rosin/simulate/travelling_string.hpp>
 #include <rosin/simulate/wave_design.hpp>
 #include <rosin/simulate/wave_echo.hpp>
 #include <rosin/simulate/wave_end.hpp>
@@ -159,6 +161,7 @@
 #include <rosin/simulate/wave_settings.hpp>
 #include <rosin/simulate/wave_string.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
+#include <rosin/simulate/wave_way.hpp>
 
 #include <rosin/diagnose/bristle_yield.hpp>
 #include <rosin/diagnose/clock_drift_effect.hpp>

@@ -74,7 +74,8 @@ inline void set_contact(wave_design& d, const string_parameters& string) {
   };
   const int stride = static_cast<int>(d.kernels.stride);
   const double from = std::min(d.limits.stop_Hz, 0.4 * rate);
-  fir fill = shortest_fir(wave, {from, 0.5 * rate}, rate, -64, 64, 1e-4);
+  const int reach = static_cast<int>(std::ceil(64e-6 * std::max(rate, 1e6)));  // what the stiffness spreads lasts as long at any rate
+  fir fill = shortest_fir(wave, {from, 0.5 * rate}, rate, -reach, reach, 1e-4);
   if (stride > 1) {
     const fir low = rate_filter(d.limits, d.wave_rate_Hz, step_s);
     d.kernels.thin = wave_taps<double>{low};
@@ -108,13 +109,20 @@ inline void set_direct(wave_design& d) {
   });
 }
 
-/// Torsion: partials as far as a round of the string leaves anything of them, and the compliance of the rest.
-inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
+/// Torsional partials as far as a round of the string leaves anything of them.
+[[nodiscard]] inline std::vector<string_mode> turn_modes(const modal_rig& rig, const band& limits, double step_s) {
   const double first_Hz = rig.torsion.speed_ratio * rig.string.fundamental_Hz;
-  const double limit_Hz = std::max(std::min(0.4 / d.kernels.step_s, std::max(d.limits.pass_Hz, 1.5 * rig.torsion.quality * first_Hz)), first_Hz);
-  d.kernels.turn = {torsional_modes(rig, limit_Hz), position, d.kernels.step_s};
-  const double stiffness = rig.torsion.impedance_ratio * rig.torsion.speed_ratio * rig.string.tension_N / rig.string.length_m;
-  d.kernels.turn_rest = (position * (1 - position) / stiffness - d.kernels.turn.compliance()) / d.kernels.step_s;
+  return torsional_modes(rig, std::max(std::min(0.4 / step_s, std::max(limits.pass_Hz, 1.5 * rig.torsion.quality * first_Hz)), first_Hz));
+}
+/// Of the surface against both ends together.
+[[nodiscard]] inline double turn_stiffness_N_m(const modal_rig& rig) noexcept {
+  return rig.torsion.impedance_ratio * rig.torsion.speed_ratio * rig.string.tension_N / rig.string.length_m;
+}
+
+/// Torsion: partials, and the compliance of the rest.
+inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
+  d.kernels.turn = {turn_modes(rig, d.limits, d.kernels.step_s), position, d.kernels.step_s};
+  d.kernels.turn_rest = (position * (1 - position) / turn_stiffness_N_m(rig) - d.kernels.turn.compliance()) / d.kernels.step_s;
 }
 
 /// The design at one stride; its block is 0 if there is no time for it.
@@ -156,7 +164,8 @@ inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
     const bool holds = settings.oversampling % stride == 0 && (stride == 1 || 2.8 * settings.band_Hz * settings.step_s() * stride <= 1);
     if (!holds) continue;
     best = detail::design_at_stride(rig, position, settings, stride);
-    if (best && best->kernels.block >= (stride > 1 ? 8 : 1)) break;
+    const bool whole = best && best->loop.largest_change < 2e-3;  // a kernel that had to begin too late would have to be bent to hold its poles
+    if (whole && best->kernels.block >= (stride > 1 ? 8 : 1)) break;
   }
   if (!best) return best;
   if (rig.torsion.present()) detail::set_turn(*best, rig, position);

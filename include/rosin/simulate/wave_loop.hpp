@@ -41,20 +41,25 @@ struct wave_loop {
   double largest_change = 0;  ///< of a partial's loop gain by the correction, absolute
 };
 
-/// Taps first ... last of an echo, made to be -1 with the delay (in samples) at 0 Hz: what of the response lies outside is
-/// replaced by a straight line over the taps.
+/// Makes a kernel `gain` with the delay (in samples) at 0 Hz: what of a response lies outside the taps is replaced by a straight line over
+/// them.
+inline void hold_at_rest(fir& kernel, double gain, double delay) noexcept {
+  const double count = static_cast<double>(kernel.taps.size()), middle = (kernel.first + kernel.last()) / 2.0;
+  double sum = 0, moment = 0;
+  for (std::size_t k = 0; k < kernel.taps.size(); ++k) {
+    sum += kernel.taps[k];
+    moment += kernel.taps[k] * (kernel.first + static_cast<double>(k) - middle);
+  }
+  const double level = (gain - sum) / count;
+  const double slope = count > 1 ? (gain * (delay - middle) - moment) / (count * (count * count - 1) / 12) : 0;
+  for (std::size_t k = 0; k < kernel.taps.size(); ++k) kernel.taps[k] += level + slope * (kernel.first + static_cast<double>(k) - middle);
+}
+
+/// Taps first ... last of an echo: -1 with the delay (in samples) at 0 Hz.
 template <Transfer H>
 [[nodiscard]] fir sample_echo(const H& wanted, const band& limits, double rate_Hz, int first, int last, double delay) {
   fir out = sample_response(wanted, limits, rate_Hz, first, last);
-  const double count = static_cast<double>(out.taps.size()), middle = (first + last) / 2.0;
-  double sum = 0, moment = 0;
-  for (std::size_t k = 0; k < out.taps.size(); ++k) {
-    sum += out.taps[k];
-    moment += out.taps[k] * (first + static_cast<double>(k) - middle);
-  }
-  const double level = (-1 - sum) / count;
-  const double slope = count > 1 ? (-(delay - middle) - moment) / (count * (count * count - 1) / 12) : 0;
-  for (std::size_t k = 0; k < out.taps.size(); ++k) out.taps[k] += level + slope * (first + static_cast<double>(k) - middle);
+  hold_at_rest(out, -1, delay);
   return out;
 }
 
@@ -99,11 +104,11 @@ inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> pol
   }
   wanted[rows_wanted - 2] = 0;
   wanted[rows_wanted - 1] = -1e5 * moment;
-  Eigen::MatrixXd normal = rows.transpose() * rows;
+  Eigen::MatrixXd between = rows * rows.transpose();  // the smallest change is a sum of rows: as many unknowns as conditions, not as taps
   double weight = 0;  // of a partial's error, on average
   for (const auto& p : poles) weight += std::abs(p) / (-p.real()) / static_cast<double>(poles.size());
-  normal.diagonal().array() += stiffness * stiffness * weight * weight * static_cast<double>(poles.size());
-  const Eigen::VectorXd change = normal.ldlt().solve(rows.transpose() * wanted);
+  between.diagonal().array() += stiffness * stiffness * weight * weight * static_cast<double>(poles.size());
+  const Eigen::VectorXd change = rows.transpose() * between.ldlt().solve(wanted);
   for (std::size_t k = 0; k < taps.size(); ++k) taps[k] += change[static_cast<Eigen::Index>(k)];
 }
 

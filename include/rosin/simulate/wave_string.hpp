@@ -140,6 +140,8 @@ public:
   [[nodiscard]] std::ptrdiff_t waves() const noexcept { return std::min(sent_[0], sent_[1]); }
   [[nodiscard]] T wave(std::size_t j, std::ptrdiff_t n) const noexcept { return *(k_.ends[j].moves() ? heard_[j] : out_[j]).at(n); }
   [[nodiscard]] const wave_kernels<T>& kernels() const noexcept { return k_; }
+  [[nodiscard]] std::ptrdiff_t block() const noexcept { return k_.block; }
+  [[nodiscard]] double step_s() const noexcept { return k_.step_s; }
 
 private:
   using row = Eigen::Array<T, Eigen::Dynamic, 1>;

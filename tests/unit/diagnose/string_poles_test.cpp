@@ -125,9 +125,9 @@ TEST_CASE("while the wire holds a clamped string its ends share the force as tho
   s.string = {0.5, 4e-6 * std::numbers::pi * std::numbers::pi, {1e7, 0, 0}, 0};
   s.ends[0].clamping = 1, s.ends[1].clamping = 0.5;
   std::array<double, 2> sum{};
-  for (int n = 1; n < 3000; ++n) {
+  for (int n = 1; n < 800; ++n) {
     const auto mode = mode_between({1, 0.5}, n, 4e-6, 0.27);
-    for (std::size_t e = 0; e < 2; ++e) sum[e] += mode.force[e] * std::pow(std::sin(n * std::numbers::pi / 3000) / (n * std::numbers::pi / 3000), 2);
+    for (std::size_t e = 0; e < 2; ++e) sum[e] += mode.force[e] * std::pow(std::sin(n * std::numbers::pi / 800) / (n * std::numbers::pi / 800), 2);
   }
   const auto held = rosin::held_forces(s, 0.27);
   for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-5));

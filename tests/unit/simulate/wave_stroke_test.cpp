@@ -109,6 +109,66 @@ TEST_CASE("on ends that move the string does what its modes do on them") {
   }
 }
 
+TEST_CASE("a rod that travels along the string: waves do what the modes do, near an end too, over a short way and a long one") {
+  for (const auto& way : {rosin::profiled_rod::break_points{{0, 0.12}, {0.006, 0.13}, {0.02, 0.1}}, {{0, 0.3}, {0.02, 0.2}}, {{0, 0.9}, {0.02, 0.86}}}) {
+    CAPTURE(way[0].second);
+    const rosin::profiled_rod rod{{}, {}, {}, way};
+    const rosin::wave_settings settings{.oversampling = 4, .pass_Hz = 20e3, .stop_Hz = 30e3};
+    const auto modes = rosin::simulate_stroke(rig, imposed_force{}, rod, {.duration_s = 0.02}, settings.as_modal());
+    const auto waves = rosin::simulate_wave_stroke(rig, imposed_force{}, rod, {.duration_s = 0.02}, settings);
+    const auto still = rosin::simulate_wave_stroke(rig, imposed_force{}, rosin::steady_rod{}, {way[0].second, 0.02}, settings);
+    REQUIRE((modes && still));
+    REQUIRE_MESSAGE(waves, waves.error());
+    CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 2e-3);
+    CHECK(delta(waves->torsion_velocity_m_s, modes->torsion_velocity_m_s) < 6e-3);
+    CHECK(delta(waves->force_near_N, modes->force_near_N) < 2e-3);
+    CHECK(delta(waves->force_far_N, modes->force_far_N) < 2e-3);
+    CHECK(delta(still->centre_velocity_m_s, modes->centre_velocity_m_s) > 0.2);
+  }
+}
+
+TEST_CASE("on ends that move a contact that could travel but stays does what one that stays does") {
+  const double z = rig.string.impedance_Ns_m();
+  const std::array<rosin::modal_termination, 2> ends{rosin::modal_termination{{{460, 30, z / 0.1}, {2400, 12, z / 0.004}}}, rosin::modal_termination{{{7000, 20, z / 0.01}}}};
+  const rosin::wave_settings settings{.oversampling = 4, .pass_Hz = 20e3, .stop_Hz = 30e3};
+  const auto design = rosin::design_travelling_wave(rig, {0.1, 0.14}, settings, ends);
+  REQUIRE_MESSAGE(design, design.error());
+  const auto travels = rosin::simulate_wave_stroke(*design, rig, imposed_force{}, rosin::profiled_rod{{}, {}, {}, {{0, 0.12}}}, 0.012, settings);
+  const auto stays = rosin::simulate_wave_stroke(rig, imposed_force{}, rosin::steady_rod{}, {0.12, 0.012}, settings, ends);
+  REQUIRE((travels && stays));
+  CHECK(delta(travels->centre_velocity_m_s, stays->centre_velocity_m_s) < 2e-3);
+  CHECK(delta(travels->force_near_N, stays->force_near_N) < 2e-3);
+  CHECK(delta(travels->force_far_N, stays->force_far_N) < 2e-3);
+}
+
+TEST_CASE("bowing while travelling: slips and forces as by the modes, and the balance of energy") {
+  const rosin::velocity_curve law{rosin::two_exponential_curve<double>{}};
+  const rosin::profiled_rod rod{{}, {{0, 0}, {0.03, 0.2}}, {{0, 0.6}}, {{0, 0.21}, {0.03, 0.19}}};
+  const rosin::wave_settings settings{.pass_Hz = 20e3, .stop_Hz = 30e3};
+  const auto modes = rosin::simulate_stroke(rig, law, rod, {.duration_s = 0.02}, settings.as_modal());
+  const auto waves = rosin::simulate_wave_stroke(rig, law, rod, {.duration_s = 0.02, .account = true}, settings);
+  REQUIRE(modes);
+  REQUIRE_MESSAGE(waves, waves.error());
+  CHECK(waves->unconverged == 0);
+  CHECK(modes->slips > 2);
+  CHECK(waves->slips == modes->slips);
+  CHECK(delta(waves->contact_force_N, modes->contact_force_N) < 0.02);
+  CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 0.04);
+  REQUIRE(waves->energy);
+  CHECK(std::abs(waves->energy->error()) < 5e-3);
+}
+
+TEST_CASE("kernels of one place do not serve a rod that travels, nor those of a way one that stays") {
+  const rosin::wave_settings settings{.oversampling = 2};
+  const auto place = rosin::design_wave(rig, 0.2, settings);
+  const auto way = rosin::design_travelling_wave(rig, {0.2, 0.21}, settings);
+  REQUIRE((place && way));
+  const rosin::velocity_curve law{rosin::two_exponential_curve<double>{}};
+  CHECK(rosin::simulate_wave_stroke(*place, rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.2}}}, 0.01, settings).error().find("travels") != std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(*way, rig, law, rosin::profiled_rod{}, 0.01, settings).error().find("stays") != std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.9}, {0.01, 1.1}}}, {.duration_s = 0.01}, settings).error().find("position") != std::string::npos);
+}
+
 TEST_CASE("a bowed string on a body: waves and modes agree until the smallest difference has grown") {
   const double z = rig.string.impedance_Ns_m();
   rosin::rig_burden burden;
