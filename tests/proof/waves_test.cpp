@@ -9,6 +9,7 @@
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/friction/yield_curve_design.hpp>
 #include <rosin/simulate/profiled_rod.hpp>
+#include <rosin/simulate/random_rig.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
 
 namespace {
@@ -59,6 +60,39 @@ TEST_CASE("velocity curve: Delta at most 0.01 over twenty periods") {
 }
 
 TEST_CASE("thermal friction: Delta at most 0.01 over twenty periods") { compare(thermal(1.2), ramp(0.03, 1.2), 0.3); }
+
+TEST_CASE("bow that travels: Delta at most 0.01 over twenty periods") {
+  rosin::profiled_rod rod = ramp(0.03, 1.2);
+  rod.place = {{0, 0.3}, {twenty_periods_s, 0.29}};
+  compare(thermal(1.2), rod, 0.3);
+}
+
+TEST_CASE("strokes drawn at random, thermal friction: most within 0.01, all nearer to the modes than these come to themselves at twice the rate") {
+  int strokes = 0, within = 0;
+  for (std::uint64_t seed = 5000; seed < 5048; ++seed) {
+    const auto r = rosin::draw_rig(seed);
+    if (!r.thermal()) continue;  // under a velocity curve all such strokes are chaotic: modes up to 250 kHz and up to 400 kHz part by 0.2 to 0.9
+    CAPTURE(seed);
+    const auto& law = std::get<1>(r.law);
+    const auto& rod = r.strokes[0];
+    const double duration_s = rod.start_s + 20 / r.rig.string.fundamental_Hz;
+    const rosin::wave_settings settings{.pass_Hz = 20e3, .stop_Hz = 30e3};
+    auto finer = settings.as_modal();
+    finer.oversampling *= 2;
+    const auto modes = rosin::simulate_stroke(r.rig, law, rod, {r.position, duration_s}, settings.as_modal());
+    const auto twice = rosin::simulate_stroke(r.rig, law, rod, {r.position, duration_s}, finer);
+    const auto waves = rosin::simulate_wave_stroke(r.rig, law, rod, {r.position, duration_s}, settings);
+    REQUIRE((modes && twice && waves));
+    CHECK(waves->unconverged == 0);
+    const double force = delta(waves->contact_force_N, modes->contact_force_N), own = delta(twice->contact_force_N, modes->contact_force_N);
+    CHECK(force < own);
+    ++strokes;
+    within += force <= 0.01;
+  }
+  MESSAGE(within, " of ", strokes, " within 0.01");
+  CHECK(strokes == 21);
+  CHECK(within >= 16);
+}
 
 TEST_CASE("at twice the rate of the contact a stroke comes closer to what it is at eight times") {
   const auto at = [](int oversampling) {
