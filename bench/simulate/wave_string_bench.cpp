@@ -52,39 +52,6 @@ void modes(benchmark::State& state, const rosin::modal_rig& string, Law law) {
   state.SetItemsProcessed(state.iterations() * steps);
 }
 
-/// A contact on its way from 0.12 to 0.14 of the string, and back.
-double place(double t) { return 0.13 - 0.01 * std::cos(100 * t); }
-
-void travelling(benchmark::State& state) {
-  const rosin::wave_settings settings{.sample_rate_Hz = 64000, .oversampling = static_cast<int>(state.range(0))};
-  const auto design = rosin::design_travelling_wave(rig(true, true), {0.12, 0.14}, settings);
-  if (!design) return state.SkipWithError(design.error().c_str());
-  rosin::travelling_string<double> waves{*design, place(0)};
-  auto law = curve();
-  constexpr int steps = 20000;
-  double t = 0;
-  for (auto _ : state)
-    for (int n = 0; n < steps; ++n, t += settings.step_s()) {
-      waves.move_to(place(t));
-      benchmark::DoNotOptimize(waves.apply(law(waves.line(rod(t))).force_N));
-    }
-  state.SetItemsProcessed(state.iterations() * steps);
-}
-
-void modes_travelling(benchmark::State& state) {
-  const double step_s = 1 / (64000.0 * static_cast<double>(state.range(0)));
-  rosin::modal_contact contact{rig(true, true), position, std::min(250e3, 0.49 / step_s), step_s};
-  auto law = curve();
-  constexpr int steps = 20000;
-  double t = 0;
-  for (auto _ : state)
-    for (int n = 0; n < steps; ++n, t += step_s) {
-      contact.move_to(place(t));
-      benchmark::DoNotOptimize(contact.apply(law(contact.line(rod(t))).force_N));
-    }
-  state.SetItemsProcessed(state.iterations() * steps);
-}
-
 void whole_take(benchmark::State& state) {
   const rosin::wave_settings settings{.sample_rate_Hz = 64000, .oversampling = static_cast<int>(state.range(0))};
   const auto string = rig(true, true);
@@ -112,5 +79,3 @@ BENCHMARK(warm)->Name("waves/stiff, torsion, thermal")->Arg(4)->Arg(16);
 BENCHMARK(whole_take)->Name("waves/stiff, torsion, with the sensors' signals")->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond);
 BENCHMARK(modes_turning)->Name("modes/stiff, torsion")->Arg(4)->Arg(16);
 BENCHMARK(modes_warm)->Name("modes/stiff, torsion, thermal")->Arg(4)->Arg(16);
-BENCHMARK(travelling)->Name("waves/stiff, torsion, travelling")->Arg(4)->Arg(16);
-BENCHMARK(modes_travelling)->Name("modes/stiff, torsion, travelling")->Arg(4)->Arg(16);

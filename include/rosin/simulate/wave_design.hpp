@@ -94,7 +94,7 @@ inline void set_direct(wave_design& d) {
   const auto& echo = d.loop.echo[d.kernels.near];
   const auto& fill = d.kernels.fill.front();
   fir whole = convolved({static_cast<int>(fill.first), fill.taps}, echo, 1), direct{std::max(1, echo.first / 2), {}};
-  direct.taps.assign(static_cast<std::size_t>(whole.last() - direct.first + 1), 0.0);
+  direct.taps.assign(static_cast<std::size_t>(whole.last() - direct.first + 16) / 16 * 16, 0.0);  // whole registers
   for (int lag = whole.first; lag <= whole.last(); ++lag)
     direct.taps[static_cast<std::size_t>(std::max(lag, direct.first) - direct.first)] += whole.taps[static_cast<std::size_t>(lag - whole.first)];
   d.kernels.direct = wave_taps<double>{direct};

@@ -49,12 +49,15 @@ template <class Echo>
   const double fastest = slowness_ratio(2 * std::numbers::pi * plan.limits.stop_Hz, plan.stiffness_s2);
   const double ringing = 6.5 * plan.rate_Hz / (plan.limits.stop_Hz - plan.limits.pass_Hz);
   const double period = (plan.delay_s[0] + plan.delay_s[1]) * plan.rate_Hz;
+  const double loss = plan.poles.empty() ? 0 : -plan.poles.front().real() / std::abs(plan.poles.front());  // 1 / 2Q
   wave_loop loop;
   for (std::size_t j = 0; j < 2; ++j) {
     const double delay = plan.delay_s[j] * plan.rate_Hz;
-    const auto first = std::max(static_cast<std::ptrdiff_t>(delay * fastest - std::min(ringing, delay / 2)), plan.earliest);
+    const double spread = ringing + 100 * loss * delay;  // constant Q: 1 / (1 + (t / loss delay)^2) to either side
+    const double begin = std::min(delay * fastest - std::min(ringing, delay / 2), delay - std::min(spread, delay / 2));
+    const auto first = std::max(static_cast<std::ptrdiff_t>(begin), plan.earliest);
     const double front = 8 * std::cbrt(1.5 * plan.stiffness_s2 * plan.delay_s[j]) * plan.rate_Hz;  // the slowest waves' Airy front
-    auto last = static_cast<std::ptrdiff_t>(std::ceil(delay + std::max(ringing, front)));
+    auto last = static_cast<std::ptrdiff_t>(std::ceil(delay + std::max({spread, front, 0.05 * period})));
     if (j == far) last = std::max(last, first + static_cast<std::ptrdiff_t>(std::ceil(1.08 * period)) + 4);
     if (last < first) return failure{"echo: an end is too near for the rate of the steps"};
     const int from = static_cast<int>(first), to = static_cast<int>(last);

@@ -129,16 +129,28 @@ inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> pol
   return p;
 }
 
-/// Largest |R1 R2| where its phase is that of a partial (within 40 degrees), from 0.3 of the first one's frequency on: from 1
-/// on it would grow. Elsewhere, and at 0 Hz, where the gain is 1, nothing can.
+/// Largest |R1 R2| where its phase passes 0, from 0.3 of the first partial's frequency on: from 1 on it would grow. Elsewhere, and at 0 Hz, where the gain is 1,
+/// nothing can (Nyquist). `period` in samples; at 16 points and more for each lag.
 [[nodiscard]] inline double largest_gain(const wave_loop& loop, double period) {
-  const int points = 16 * (loop.echo[0].last() + loop.echo[1].last());
+  std::size_t grid = 4096;
+  while (grid < 32 * static_cast<std::size_t>(loop.echo[0].last() + loop.echo[1].last())) grid *= 2;
+  const lane_fft<double, 1> transform(grid);
+  std::array<std::vector<double>, 2> spectrum;  // re, im by turns
+  for (std::size_t j = 0; j < 2; ++j) {
+    spectrum[j].assign(2 * grid, 0.0);
+    for (std::size_t k = 0; k < loop.echo[j].taps.size(); ++k)
+      spectrum[j][2 * transform.position(static_cast<std::size_t>(loop.echo[j].first) + k)] = loop.echo[j].taps[k];
+    transform.inverse(spectrum[j].data());  // of real taps: the forward transform's conjugate
+  }
+  const auto gain = [&](std::size_t i) {
+    const auto at = [&](std::size_t j) { return std::complex<double>{spectrum[j][2 * i], spectrum[j][2 * i + 1]}; };
+    return at(0) * at(1);
+  };
   double largest = 0;
-  for (int i = 1; i <= points; ++i) {
-    if (i * period < 0.6 * points) continue;
-    const auto z = std::polar(1.0, std::numbers::pi * i / points);
-    const auto gain = response_at(loop.echo[0], z) * response_at(loop.echo[1], z);
-    if (gain.real() > 0.77 * std::abs(gain)) largest = std::max(largest, std::abs(gain));
+  for (auto i = static_cast<std::size_t>(0.3 * static_cast<double>(grid) / period) + 1; i <= grid / 2; ++i) {
+    const auto before = gain(i - 1), here = gain(i);
+    const bool passes = before.real() > 0 && here.real() > 0 && before.imag() * here.imag() <= 0;
+    if (passes) largest = std::max({largest, std::abs(before), std::abs(here)});
   }
   return largest;
 }

@@ -10,6 +10,7 @@
 //
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -58,8 +59,10 @@ public:
     const double fastest = slowness_ratio(2 * std::numbers::pi * limits.stop_Hz, string.stiffness_s2());
     const double ringing = 6.5 * rate_Hz / (limits.stop_Hz - limits.pass_Hz), longest = most * steps_;
     const double front = 8 * std::cbrt(1.5 * string.stiffness_s2() * longest / rate_Hz) * rate_Hz;
-    first_ = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(least_ * fastest - std::min(ringing, least_ / 2)));
-    size_ = static_cast<std::ptrdiff_t>(std::ceil(longest + std::max(ringing, front))) - first_ + 1;
+    const double spread = ringing + 50 * string.loss.inverse_q(string.fundamental_Hz) * longest;  // as in wave_echo.hpp
+    const double begin = std::min(least_ * fastest - std::min(ringing, least_ / 2), least_ - std::min(spread, least_ / 2));
+    first_ = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(begin));
+    size_ = static_cast<std::ptrdiff_t>(std::ceil(longest + std::max({spread, front, 0.2 * steps_}))) - first_ + 1;
     rows_ = static_cast<std::ptrdiff_t>(std::ceil((longest - least_) * parts_)) + 2;
     for (std::ptrdiff_t i = 0; i < rows_; ++i) append(string, least_ + static_cast<double>(i) / parts_, limits, rate_Hz);
   }

@@ -65,3 +65,16 @@ TEST_CASE("torsion is that of the place where the contact is") {
   }
   CHECK(turned == doctest::Approx(0.4 * 0.6 / design->turn_stiffness_N_m).epsilon(1e-3));
 }
+
+TEST_CASE("in single precision the same motion") {
+  const auto design = rosin::design_travelling_wave(rig(true), {0.2, 0.22}, {.oversampling = 2, .band_Hz = 40e3});
+  REQUIRE(design);
+  rosin::travelling_string<double> exact{*design, 0.2};
+  rosin::travelling_string<float> single{*design, 0.2};
+  for (int n = 0; n < 4000; ++n) {
+    const double x = 0.2 + 0.02 * n / 4000, force = std::sin(0.02 * n);
+    exact.move_to(x), single.move_to(x);
+    CHECK(static_cast<double>(single.line({}).free_velocity_m_s) == doctest::Approx(exact.line({}).free_velocity_m_s).epsilon(1e-4).scale(1));
+    exact.apply(force), single.apply(static_cast<float>(force));
+  }
+}

@@ -127,6 +127,23 @@ TEST_CASE("a rod that travels along the string: waves do what the modes do, near
   }
 }
 
+TEST_CASE("strings without stiffness and with much loss do what their modes do, too") {
+  for (const auto& like : {std::pair{100.0, 0.0}, {700.0, 0.0}, {100.0, 4e-5}}) {
+    CAPTURE(like.first);
+    const rosin::modal_rig string{
+        .string = {.length_m = 0.65, .tension_N = 70, .fundamental_Hz = 196, .bending_stiffness_Nm2 = like.second, .loss = {.quality = like.first}}};
+    const rosin::wave_settings settings{.sample_rate_Hz = 48e3, .oversampling = 8, .band_Hz = 60e3, .pass_Hz = 15e3, .stop_Hz = 22e3};
+    const auto modes = rosin::simulate_stroke(string, imposed_force{}, rosin::steady_rod{}, {0.2, 0.04}, settings.as_modal(150e3));
+    const auto waves = rosin::simulate_wave_stroke(string, imposed_force{}, rosin::steady_rod{}, {0.2, 0.04}, settings);
+    const auto travels = rosin::simulate_wave_stroke(string, imposed_force{}, rosin::profiled_rod{{}, {}, {}, {{0, 0.2}}}, {.duration_s = 0.04}, settings);
+    REQUIRE(modes);
+    REQUIRE_MESSAGE(waves, waves.error());
+    REQUIRE_MESSAGE(travels, travels.error());
+    CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 5e-3);
+    CHECK(delta(travels->centre_velocity_m_s, modes->centre_velocity_m_s) < 1e-2);
+  }
+}
+
 TEST_CASE("on ends that move a contact that could travel but stays does what one that stays does") {
   const double z = rig.string.impedance_Ns_m();
   const std::array<rosin::modal_termination, 2> ends{rosin::modal_termination{{{460, 30, z / 0.1}, {2400, 12, z / 0.004}}}, rosin::modal_termination{{{7000, 20, z / 0.01}}}};
