@@ -12,7 +12,7 @@ json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
 
 json with_interval(const diagnosed_value& v) {
   json out{{"value", v.value}};
-  if (std::isfinite(v.sd) && v.sd > 0) out["ci95"] = {v.value - 1.96 * v.sd, v.value + 1.96 * v.sd};
+  if (std::isfinite(v.sd) && v.sd > 0) out["ci95"] = interval_of(v);
   return out;
 }
 

@@ -184,7 +184,8 @@ std::string with_interval(const diagnosed_value& p) {
   const double certain = std::ceil(std::log10(std::max(1e-300, std::abs(p.value)) / p.sd));
   const std::string form = "%." + std::to_string(static_cast<int>(std::clamp(certain, 0.0, 10.0)) + 2) + "g";
   const auto text = [&](double x) { return in_digits(x, form.c_str()); };
-  return text(p.value) + "   (95 %: " + text(p.value - 1.96 * p.sd) + " to " + text(p.value + 1.96 * p.sd) + ")";
+  const auto [least, most] = interval_of(p);
+  return text(p.value) + "   (95 %: " + text(least) + " to " + text(most) + ")";
 }
 
 void add_fit(const rig_diagnosis& d, report_page& page) {

@@ -25,6 +25,9 @@ struct diagnosed_value {
   double value = 0, sd = 0;
 };
 
+/// What holds the truth in 95 of 100 cases; no mass, place or the like that cannot be.
+[[nodiscard]] std::array<double, 2> interval_of(const diagnosed_value& v);
+
 /// One effect that the declared model lacks.
 struct missing_effect {
   std::string effect;

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <set>
 
 namespace tool {
 
@@ -35,6 +37,15 @@ std::string value_of(const missing_effect& m, const std::string& name, double fa
 }
 
 }  // namespace
+
+std::array<double, 2> interval_of(const diagnosed_value& v) {
+  static const std::set<std::string> shares{"position", "clamping"};
+  static const std::set<std::string> positive{"mass_kg", "resistance_Ns_m", "frequency_Hz", "q", "cutoff_Hz", "duration_s", "width_m", "axial_stiffness_N",
+                                              "bending_stiffness_Nm2", "bristle_stiffness_N_m", "speed_ratio", "impedance_ratio"};
+  constexpr double all = std::numeric_limits<double>::infinity();
+  const bool share = shares.contains(v.name);
+  return {std::max(v.value - 1.96 * v.sd, share || positive.contains(v.name) ? 0 : -all), std::min(v.value + 1.96 * v.sd, share ? 1 : all)};
+}
 
 diagnosed_value in_si(const std::string& name, double v, double sd, const rosin::rig_values& values, double f0) {
   const nominal_errors e = errors_of(values);
