@@ -44,7 +44,8 @@ std::array<double, 2> interval_of(const diagnosed_value& v) {
                                               "bending_stiffness_Nm2", "bristle_stiffness_N_m", "speed_ratio", "impedance_ratio"};
   constexpr double all = std::numeric_limits<double>::infinity();
   const bool share = shares.contains(v.name);
-  return {std::max(v.value - 1.96 * v.sd, share || positive.contains(v.name) ? 0 : -all), std::min(v.value + 1.96 * v.sd, share ? 1 : all)};
+  const double least = v.value >= 0 && (share || positive.contains(v.name)) ? 0 : -all, most = v.value <= 1 && share ? 1 : all;
+  return {std::max(v.value - 1.96 * v.sd, least), std::min(v.value + 1.96 * v.sd, most)};
 }
 
 diagnosed_value in_si(const std::string& name, double v, double sd, const rosin::rig_values& values, double f0) {

@@ -50,7 +50,8 @@ class travelling_string {
 public:
   travelling_string(const travelling_design& d, double position)
       : k_{d.kernels},
-        turn_{d, position},
+        range_{d.range},
+        turn_{d, std::fmin(std::fmax(position, d.range.least), d.range.most)},
         velocity_{0, k_.block() + static_cast<std::ptrdiff_t>(k_.local.size())},
         arrived_{tape(), tape()},
         sent_{tape(), tape()},
@@ -59,8 +60,10 @@ public:
     move_to(position);
   }
 
-  /// Where the contact is from the end of the last step on, distance from the near end / length: to be said before line().
-  void move_to(double position) noexcept {
+  /// Where the contact is from the end of the last step on, distance from the near end / length: to be said before line(), in every step. Returns where it is:
+  /// it is held within the range of the design.
+  double move_to(double position) noexcept {
+    position = std::fmin(std::fmax(position, range_.least), range_.most);
     const std::array<double, 2> distance{position, 1 - position};
     echo_ = 0;
     for (std::size_t j = 0; j < 2; ++j) {
@@ -68,6 +71,7 @@ public:
       echo_ -= k_.way[j].back(distance[j]).gather(std::as_const(sent_[j]).at(now_));
     }
     turn_.move_to(position);
+    return position;
   }
 
   [[nodiscard]] load_line<T> line(const rod_state& rod) const noexcept {
@@ -133,6 +137,7 @@ private:
   }
 
   travelling_kernels<T> k_;
+  contact_range range_;
   travelling_turn turn_;
   std::ptrdiff_t now_ = 0, block_end_ = 0, loop_end_ = 0, met_ = 0, round_ = 0;
   std::array<way_taps<T>, 2> to_end_{};

@@ -72,7 +72,7 @@ bool run_waves(String& string, Law& law, const Motion& motion, wave_record& out,
   for (std::size_t i = first; i < s.force.size(); ++i) {
     const double t = static_cast<double>(i - first) * step_s;
     const rod_state rod = motion(t);
-    if constexpr (requires { string.move_to(t); }) string.move_to(s.position[i] = place_of(motion, t, 0));
+    if constexpr (requires { string.move_to(t); }) s.position[i] = string.move_to(place_of(motion, t, 0));
     const auto line = string.line(rod);
     const auto answer = law(line);
     s.slip[i] = static_cast<double>(line.slip(answer.force_N));
@@ -87,7 +87,7 @@ bool run_waves(String& string, Law& law, const Motion& motion, wave_record& out,
     if (++block < string.block()) continue;
     block = 0;
     copy_waves(string, out, copied);
-    if (!(std::abs(s.centre[i]) < 1e6)) return false;
+    if (!(std::abs(s.centre[i]) < 1e6 && std::abs(s.torsion[i]) < 1e6)) return false;
   }
   take.slipping = static_cast<double>(slipped) / static_cast<double>(end - end / 2);
   return true;
@@ -157,13 +157,13 @@ template <class String, class Law, class Motion>
 
 }  // namespace detail
 
-/// Where a rod is during a stroke.
+/// Where a rod is during a stroke. Precondition: its duration and the sample rate are above 0 and finite.
 template <RodMotion Motion>
 [[nodiscard]] contact_range range_of(const Motion& motion, const wave_stroke& stroke, const wave_settings& settings) noexcept {
   const double start = detail::place_of(motion, 0, stroke.position);
   contact_range range{start, start};
   if (!detail::travels(motion)) return range;
-  for (double t = 0; t <= stroke.duration_s + 0.01; t += 1 / settings.sample_rate_Hz) {
+  for (double t = 0; t <= stroke.duration_s; t += 1 / settings.sample_rate_Hz) {
     const double x = detail::place_of(motion, t, start);
     range = {std::min(range.least, x), std::max(range.most, x)};
   }
@@ -199,6 +199,8 @@ template <class T = double, FrictionLaw Law, TravellingRod Motion>
 template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
 [[nodiscard]] outcome<modal_take> simulate_wave_stroke(const modal_rig& rig, Law law, Motion motion = {}, wave_stroke stroke = {},
                                                        const wave_settings& settings = {}, const std::array<modal_termination, 2>& ends = {}) {
+  for (const auto& problem : {problem_with(settings), problem_with_duration(stroke.duration_s, settings.as_modal())})
+    if (!problem.empty()) return failure{problem};
   if constexpr (TravellingRod<Motion>)
     if (motion.travels()) {
       const auto design = design_travelling_wave(rig, range_of(motion, stroke, settings), settings, ends);

@@ -44,6 +44,11 @@ struct way_taps {
     return (1 - weight) * (Eigen::Map<const row>(a, size) * past).sum() + weight * (Eigen::Map<const row>(b, size) * past).sum();
   }
 
+  /// to[lag] += tap; for rows in turned order.
+  void spread(T* to) const noexcept {
+    for (std::ptrdiff_t k = 0; k < size; ++k) to[first + k] += (1 - weight) * a[size - 1 - k] + weight * b[size - 1 - k];
+  }
+
 private:
   using row = Eigen::Array<T, Eigen::Dynamic, 1>;
 };
@@ -59,7 +64,7 @@ public:
     const double fastest = slowness_ratio(2 * std::numbers::pi * limits.stop_Hz, string.stiffness_s2());
     const double ringing = 6.5 * rate_Hz / (limits.stop_Hz - limits.pass_Hz), longest = most * steps_;
     const double front = 8 * std::cbrt(1.5 * string.stiffness_s2() * longest / rate_Hz) * rate_Hz;
-    const double spread = ringing + 50 * string.loss.inverse_q(string.fundamental_Hz) * longest;  // as in wave_echo.hpp
+    const double spread = ringing + 400 * string.loss.inverse_q(string.fundamental_Hz) * longest;  // as in wave_echo.hpp; what is cut off here makes a string ring that a contact holds
     const double begin = std::min(least_ * fastest - std::min(ringing, least_ / 2), least_ - std::min(spread, least_ / 2));
     first_ = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(begin));
     size_ = static_cast<std::ptrdiff_t>(std::ceil(longest + std::max({spread, front, 0.2 * steps_}))) - first_ + 1;
@@ -71,7 +76,7 @@ public:
   explicit wave_way(const wave_way<U>& w)
       : steps_{w.steps_}, least_{w.least_}, parts_{w.parts_}, first_{w.first_}, size_{w.size_}, rows_{w.rows_}, to_end_(w.to_end_.begin(), w.to_end_.end()), back_(w.back_.begin(), w.back_.end()) {}
 
-  /// At a distance from the end, share of the length; beyond the way it is that of the way's end.
+  /// At a distance from the end, share of the length; beyond the way it is that of the way's end. Precondition: not empty.
   [[nodiscard]] way_taps<T> to_end(double distance) const noexcept { return at(to_end_, distance); }
   [[nodiscard]] way_taps<T> back(double distance) const noexcept { return at(back_, distance); }
 

@@ -37,9 +37,24 @@ TEST_CASE("nothing is asked for before it is known") {
   }
 }
 
+TEST_CASE("where a contact that sticks would make the string grow the kernels are refused; at a finer rate it does not") {
+  auto string = rig;
+  string.torsion = {};
+  string.string.loss.quality = 3000;
+  CHECK(rosin::design_travelling_wave(string, {0.03, 0.05}, {.oversampling = 4}).error().find("stable") != std::string::npos);
+  const auto design = rosin::design_travelling_wave(string, {0.03, 0.05}, {.oversampling = 8});
+  REQUIRE_MESSAGE(design, design.error());
+  const double period = 1 / (660 * design->kernels.step_s);
+  for (const double position : {0.03, 0.0417, 0.05}) CHECK(rosin::detail::largest_stuck_gain(design->kernels, position, period) < 1);
+}
+
 TEST_CASE("ways off the string, too near an end, and ends that a rate cannot hold are refused with the reason") {
   CHECK(rosin::design_travelling_wave(rig, {0.1, 1.2}).error().find("position") != std::string::npos);
   CHECK(rosin::design_travelling_wave(rig, {0.003, 0.2}).error().find("end") != std::string::npos);
+  CHECK(rosin::design_travelling_wave(rig, {0.3, 0.2}).error().find("beyond") != std::string::npos);
+  auto low = rig;
+  low.string.fundamental_Hz = 41;
+  CHECK(rosin::design_travelling_wave(low, {0.1, 0.9}).error().find("too long") != std::string::npos);
   std::array<rosin::modal_termination, 2> ends{};
   ends[1].modes = {{.frequency_Hz = 480e3, .q = 10, .per_mass_per_s = 1}};
   CHECK(rosin::design_travelling_wave(rig, {0.1, 0.2}, {.oversampling = 2}, ends).error().find("termination") != std::string::npos);

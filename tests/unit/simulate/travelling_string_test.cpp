@@ -66,6 +66,35 @@ TEST_CASE("torsion is that of the place where the contact is") {
   CHECK(turned == doctest::Approx(0.4 * 0.6 / design->turn_stiffness_N_m).epsilon(1e-3));
 }
 
+TEST_CASE("between an end and a contact that sticks the string rings down as a shorter one does") {
+  auto string = rig(false);
+  string.string.loss.quality = 3000;
+  const auto design = rosin::design_travelling_wave(string, {0.03, 0.05}, {.oversampling = 8});
+  REQUIRE_MESSAGE(design, design.error());
+  rosin::travelling_string<double> waves{*design, 0.04};
+  std::array<double, 2> largest{};
+  const int steps = static_cast<int>(0.1 / design->kernels.step_s);
+  for (int n = 0; n < steps; ++n) {
+    waves.move_to(0.04);
+    const auto line = waves.line({});
+    const double force = n < 100 ? 1 : -line.free_velocity_m_s / line.mobility_m_Ns;
+    waves.apply(force);
+    if (n > steps / 10) largest[n < steps / 2 ? 0 : 1] = std::max(largest[n < steps / 2 ? 0 : 1], std::abs(force));
+  }
+  CHECK(largest[0] > 1e-3);
+  CHECK(largest[1] < largest[0]);
+}
+
+TEST_CASE("a contact is held within the range of its kernels") {
+  const auto design = rosin::design_travelling_wave(rig(true), {0.2, 0.22}, {.oversampling = 2, .band_Hz = 40e3});
+  REQUIRE(design);
+  rosin::travelling_string<double> waves{*design, 0.2};
+  CHECK(waves.move_to(0.21) == 0.21);
+  CHECK(waves.move_to(1.2) == 0.22);
+  CHECK(waves.line({}).mobility_m_Ns > 0);
+  CHECK(waves.move_to(std::nan("")) == 0.2);
+}
+
 TEST_CASE("in single precision the same motion") {
   const auto design = rosin::design_travelling_wave(rig(true), {0.2, 0.22}, {.oversampling = 2, .band_Hz = 40e3});
   REQUIRE(design);

@@ -184,6 +184,11 @@ TEST_CASE("kernels of one place do not serve a rod that travels, nor those of a 
   CHECK(rosin::simulate_wave_stroke(*place, rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.2}}}, 0.01, settings).error().find("travels") != std::string::npos);
   CHECK(rosin::simulate_wave_stroke(*way, rig, law, rosin::profiled_rod{}, 0.01, settings).error().find("stays") != std::string::npos);
   CHECK(rosin::simulate_wave_stroke(rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.9}, {0.01, 1.1}}}, {.duration_s = 0.01}, settings).error().find("position") != std::string::npos);
+  const rosin::profiled_rod moves{{}, {}, {}, {{0, 0.2}, {0.01, 0.21}}};
+  for (const double duration_s : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
+    CHECK(rosin::simulate_wave_stroke(rig, law, moves, {.duration_s = duration_s}, settings).error().find("must last") != std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(rig, law, moves, {.duration_s = 0.01}, {.sample_rate_Hz = -1}).error().find("sample rate") != std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.3}, {0.01, 0.29}, {0.018, 1.1}}}, {.duration_s = 0.01}, settings));  // it leaves the string after the take
 }
 
 TEST_CASE("a bowed string on a body: waves and modes agree until the smallest difference has grown") {
