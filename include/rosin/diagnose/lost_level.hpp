@@ -178,6 +178,8 @@ struct heat_objective {
 /// Levels of strokes whose mean force is unknown. Precondition: each has 100 slip samples and a normal force. `law_error`: by how much
 /// the level of a thermal law is off, as a coefficient of friction, where it leaves no more than `floor`. A thermal law that leaves much more
 /// is not that of the contact to the point, and what it says of zero is worse than the usual range: then that is used.
+/// One stroke alone bends layer and area to what it needs: 19 strokes of 8 random rigs were off by -0.08 on the average, 0.09 rms. Its error is taken as 2.5 times as
+/// large.
 [[nodiscard]] inline lost_levels find_lost_levels(const std::vector<slip_record>& records, double floor = 0.003, double law_error = 0.04) {
   detail::level_search search(records);
   for (int pass = 0; pass < 2; ++pass) search.settle(fit_design(search.curve(), floor));
@@ -197,7 +199,8 @@ struct heat_objective {
     const auto fit = fit_design(objective.search.heated({.layer_m = std::exp(at[0]), .area_per_newton_m2 = std::exp(at[1])}), floor);
     out.gain = objective.independent * std::log(curve.solution.scale / fit.solution.scale);
     out.left = fit.solution.scale;
-    const double sd = std::hypot(detail::sd_of_common(objective, at), law_error * out.left / floor);
+    const double alone = records.size() > 1 ? 1 : 2.5;
+    const double sd = std::hypot(detail::sd_of_common(objective, at), alone * law_error * out.left / floor);
     if (out.gain > 30 && out.left < 1.4 * floor && sd < detail::usual_doubt) {
       out.law = contact_law::thermal;
       out.common_sd = sd;

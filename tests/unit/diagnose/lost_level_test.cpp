@@ -52,6 +52,15 @@ TEST_CASE("lost level: heat knows where zero is") {
   }
 }
 
+TEST_CASE("lost level: one stroke alone knows it less well") {
+  std::vector<double> lost;
+  auto records = without_their_mean(true, lost);
+  records.resize(1);
+  const auto found = rosin::find_lost_levels(records);
+  CHECK(found.common_sd >= 0.1);
+  CHECK(std::abs(found.takes[0].level_N - lost[0]) < 3 * found.takes[0].sd_N);
+}
+
 TEST_CASE("lost level: a velocity curve tells the levels against each other, no more") {
   std::vector<double> lost;
   const auto records = without_their_mean(false, lost);
