@@ -20,6 +20,9 @@ double smear_of(double duration_s, double rate_Hz) {
   return std::pow(0.25 / rate_Hz, 2) / 12 / (2 * share * std::max(duration_s, 0.25 / rate_Hz));
 }
 
+/// An effect's name in its id, which goes on with the place or the variant.
+std::string bare(const std::string& id) { return id.substr(0, id.find_first_of("@ ")); }
+
 missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, const rosin::rig_values& values) {
   const rosin::pluck_effect& e = p.best.effects[which];
   missing_effect m;
@@ -30,7 +33,7 @@ missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, con
   m.probability = others > 0 ? 1 / (1 + others) : 1 - std::exp(-std::min(30.0, p.found_gain[which]));
   if (last)
     for (const auto& id : p.alternatives) {
-      const std::string name = id.substr(0, id.find_first_of("@ "));
+      const std::string name = bare(id);
       if (name != e.name && std::find(m.indistinguishable_from.begin(), m.indistinguishable_from.end(), name) == m.indistinguishable_from.end())
         m.indistinguishable_from.push_back(name);
     }
@@ -61,7 +64,7 @@ missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, con
 
 std::vector<std::string> bare(const std::vector<std::string>& ids) {
   std::vector<std::string> out;
-  for (const auto& id : ids) out.push_back(id.substr(0, id.find_first_of("@ ")));
+  for (const auto& id : ids) out.push_back(bare(id));
   return out;
 }
 

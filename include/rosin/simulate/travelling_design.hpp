@@ -11,9 +11,6 @@
 //
 #pragma once
 
-#include <span>
-
-#include <rosin/math/lane_fft.hpp>
 #include <rosin/simulate/wave_design.hpp>
 #include <rosin/simulate/wave_way.hpp>
 
@@ -50,21 +47,11 @@ struct travelling_design {
 
 namespace detail {
 
-/// Forward transform of a kernel, up to half the rate (conjugate).
-[[nodiscard]] inline std::vector<std::complex<double>> spectrum_of(const lane_fft<double, 1>& transform, std::ptrdiff_t first, std::span<const double> taps) {
-  std::vector<double> data(2 * transform.size(), 0.0);
-  for (std::size_t k = 0; k < taps.size(); ++k) data[2 * transform.position(static_cast<std::size_t>(first) + k)] = taps[k];
-  transform.inverse(data.data());
-  std::vector<std::complex<double>> out(transform.size() / 2 + 1);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {data[2 * i], data[2 * i + 1]};
-  return out;
-}
-
 /// Where the contact sticks it parts the string in two, f = (G_1 m_1 + G_2 m_2) / local, and what goes round is
 ///
 ///     a_j = R_i m_i + H_j (G_1 m_1 + G_2 m_2) / local.
 ///
-/// The largest gain of its two ways round where their phase passes 0, from 0.3 of the first partial on: from 1 on it would grow (Nyquist).
+/// The largest gain of its two ways round where their phase passes 0, from 0.3 of the first partial on.
 [[nodiscard]] inline double largest_stuck_gain(const travelling_kernels<double>& k, double position, double period) {
   using complex = std::complex<double>;
   std::size_t grid = 4096;
@@ -86,8 +73,7 @@ namespace detail {
     const complex b = r[1][i] + h[0][i] * g[1][i] / local[i], c = r[0][i] + h[1][i] * g[0][i] / local[i], half = (a + d) / 2.0, root = std::sqrt((a - d) * (a - d) / 4.0 + b * c);
     std::array<complex, 2> here{half + root, half - root};
     if (std::abs(here[0] - before[0]) + std::abs(here[1] - before[1]) > std::abs(here[1] - before[0]) + std::abs(here[0] - before[1])) std::swap(here[0], here[1]);
-    for (std::size_t j = 0; j < 2; ++j)
-      if (before[j].real() > 0 && here[j].real() > 0 && before[j].imag() * here[j].imag() <= 0) largest = std::max({largest, std::abs(before[j]), std::abs(here[j])});
+    for (std::size_t j = 0; j < 2; ++j) largest = std::max(largest, gain_at_crossing(before[j], here[j]));
     before = here;
   }
   return largest;

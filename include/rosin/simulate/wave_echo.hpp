@@ -42,22 +42,31 @@ struct pinned_echo {
   }
 };
 
+/// First and last lag of the response to a passage of between `least` and `most` samples: the fastest waves come early, the slowest in an Airy front, and what a
+/// constant Q loses spreads it to 1 / (1 + (t / w)^2), w = loss * most, cut off at `widths` of these; the low-pass rings a little around all.
+struct passage_span {
+  double first, last;
+  passage_span(double least, double most, double stiffness_s2, const band& limits, double rate_Hz, double loss, double widths) {
+    const double fastest = slowness_ratio(2 * std::numbers::pi * limits.stop_Hz, stiffness_s2);
+    const double ringing = 6.5 * rate_Hz / (limits.stop_Hz - limits.pass_Hz), spread = ringing + widths * loss * most;
+    const double front = 8 * std::cbrt(1.5 * stiffness_s2 * (most / rate_Hz)) * rate_Hz;
+    first = std::min(least * fastest - std::min(ringing, least / 2), least - std::min(spread, least / 2));
+    last = most + std::max(spread, front);
+  }
+};
+
 /// `echo(j)` gives the transfer function of side j's echo. Fails where the kernels cannot hold what is asked for.
 template <class Echo>
 [[nodiscard]] outcome<wave_loop> design_loop(const echo_plan& plan, const Echo& echo) {
   const std::size_t far = plan.delay_s[0] <= plan.delay_s[1] ? 1 : 0;
-  const double fastest = slowness_ratio(2 * std::numbers::pi * plan.limits.stop_Hz, plan.stiffness_s2);
-  const double ringing = 6.5 * plan.rate_Hz / (plan.limits.stop_Hz - plan.limits.pass_Hz);
   const double period = (plan.delay_s[0] + plan.delay_s[1]) * plan.rate_Hz;
   const double loss = plan.poles.empty() ? 0 : -plan.poles.front().real() / std::abs(plan.poles.front());  // 1 / 2Q
   wave_loop loop;
   for (std::size_t j = 0; j < 2; ++j) {
     const double delay = plan.delay_s[j] * plan.rate_Hz;
-    const double spread = ringing + 100 * loss * delay;  // constant Q: 1 / (1 + (t / loss delay)^2) to either side
-    const double begin = std::min(delay * fastest - std::min(ringing, delay / 2), delay - std::min(spread, delay / 2));
-    const auto first = std::max(static_cast<std::ptrdiff_t>(begin), plan.earliest);
-    const double front = 8 * std::cbrt(1.5 * plan.stiffness_s2 * plan.delay_s[j]) * plan.rate_Hz;  // the slowest waves' Airy front
-    auto last = static_cast<std::ptrdiff_t>(std::ceil(delay + std::max({spread, front, 0.05 * period})));
+    const passage_span span{delay, delay, plan.stiffness_s2, plan.limits, plan.rate_Hz, loss, 100};
+    const auto first = std::max(static_cast<std::ptrdiff_t>(span.first), plan.earliest);
+    auto last = static_cast<std::ptrdiff_t>(std::ceil(std::max(span.last, delay + 0.05 * period)));
     if (j == far) last = std::max(last, first + static_cast<std::ptrdiff_t>(std::ceil(1.08 * period)) + 4);
     if (last < first) return failure{"echo: an end is too near for the rate of the steps"};
     const int from = static_cast<int>(first), to = static_cast<int>(last);

@@ -129,29 +129,36 @@ inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> pol
   return p;
 }
 
-/// Largest |R1 R2| where its phase passes 0, from 0.3 of the first partial's frequency on: from 1 on it would grow. Elsewhere, and at 0 Hz, where the gain is 1,
-/// nothing can (Nyquist). `period` in samples; at 16 points and more for each lag.
+namespace detail {
+
+/// Transform of a kernel up to half the rate (conjugate). Precondition: it begins at or after 0 and ends before the transform does.
+[[nodiscard]] inline std::vector<std::complex<double>> spectrum_of(const lane_fft<double, 1>& transform, std::ptrdiff_t first, std::span<const double> taps) {
+  std::vector<double> data(2 * transform.size(), 0.0);
+  for (std::size_t k = 0; k < taps.size(); ++k) data[2 * transform.position(static_cast<std::size_t>(first) + k)] = taps[k];
+  transform.inverse(data.data());
+  std::vector<std::complex<double>> out(transform.size() / 2 + 1);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {data[2 * i], data[2 * i + 1]};
+  return out;
+}
+
+/// The larger of two neighbouring gains where the phase passes 0 between them; 0 elsewhere. From 1 on it would grow (Nyquist).
+[[nodiscard]] inline double gain_at_crossing(std::complex<double> before, std::complex<double> here) noexcept {
+  const bool passes = before.real() > 0 && here.real() > 0 && before.imag() * here.imag() <= 0;
+  return passes ? std::max(std::abs(before), std::abs(here)) : 0;
+}
+
+}  // namespace detail
+
+/// Largest |R1 R2| where its phase passes 0, from 0.3 of the first partial's frequency on: elsewhere, and at 0 Hz, where the gain is 1,
+/// nothing can grow. `period` in samples; at 16 points and more for each lag.
 [[nodiscard]] inline double largest_gain(const wave_loop& loop, double period) {
   std::size_t grid = 4096;
   while (grid < 32 * static_cast<std::size_t>(loop.echo[0].last() + loop.echo[1].last())) grid *= 2;
   const lane_fft<double, 1> transform(grid);
-  std::array<std::vector<double>, 2> spectrum;  // re, im by turns
-  for (std::size_t j = 0; j < 2; ++j) {
-    spectrum[j].assign(2 * grid, 0.0);
-    for (std::size_t k = 0; k < loop.echo[j].taps.size(); ++k)
-      spectrum[j][2 * transform.position(static_cast<std::size_t>(loop.echo[j].first) + k)] = loop.echo[j].taps[k];
-    transform.inverse(spectrum[j].data());  // of real taps: the forward transform's conjugate
-  }
-  const auto gain = [&](std::size_t i) {
-    const auto at = [&](std::size_t j) { return std::complex<double>{spectrum[j][2 * i], spectrum[j][2 * i + 1]}; };
-    return at(0) * at(1);
-  };
+  const auto one = detail::spectrum_of(transform, loop.echo[0].first, loop.echo[0].taps), other = detail::spectrum_of(transform, loop.echo[1].first, loop.echo[1].taps);
   double largest = 0;
-  for (auto i = static_cast<std::size_t>(0.3 * static_cast<double>(grid) / period) + 1; i <= grid / 2; ++i) {
-    const auto before = gain(i - 1), here = gain(i);
-    const bool passes = before.real() > 0 && here.real() > 0 && before.imag() * here.imag() <= 0;
-    if (passes) largest = std::max({largest, std::abs(before), std::abs(here)});
-  }
+  for (auto i = static_cast<std::size_t>(0.3 * static_cast<double>(grid) / period) + 1; i <= grid / 2; ++i)
+    largest = std::max(largest, detail::gain_at_crossing(one[i - 1] * other[i - 1], one[i] * other[i]));
   return largest;
 }
 

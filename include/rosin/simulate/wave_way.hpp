@@ -61,13 +61,10 @@ public:
   /// For distances least ... most from the end, as shares of the length. Precondition: 0 < least <= most < 1.
   wave_way(const string_parameters& string, double least, double most, const band& limits, double rate_Hz)
       : steps_{rate_Hz / (2 * string.fundamental_Hz)}, least_{least * steps_}, parts_{std::ceil(2 * std::numbers::pi * limits.pass_Hz / (0.15 * rate_Hz))} {
-    const double fastest = slowness_ratio(2 * std::numbers::pi * limits.stop_Hz, string.stiffness_s2());
-    const double ringing = 6.5 * rate_Hz / (limits.stop_Hz - limits.pass_Hz), longest = most * steps_;
-    const double front = 8 * std::cbrt(1.5 * string.stiffness_s2() * longest / rate_Hz) * rate_Hz;
-    const double spread = ringing + 400 * string.loss.inverse_q(string.fundamental_Hz) * longest;  // as in wave_echo.hpp; what is cut off here makes a string ring that a contact holds
-    const double begin = std::min(least_ * fastest - std::min(ringing, least_ / 2), least_ - std::min(spread, least_ / 2));
-    first_ = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(begin));
-    size_ = static_cast<std::ptrdiff_t>(std::ceil(longest + std::max({spread, front, 0.2 * steps_}))) - first_ + 1;
+    const double longest = most * steps_;
+    const passage_span span{least_, longest, string.stiffness_s2(), limits, rate_Hz, string.loss.inverse_q(string.fundamental_Hz) / 2, 800};  // less, and a held string may grow
+    first_ = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(span.first));
+    size_ = static_cast<std::ptrdiff_t>(std::ceil(std::max(span.last, longest + 0.2 * steps_))) - first_ + 1;
     rows_ = static_cast<std::ptrdiff_t>(std::ceil((longest - least_) * parts_)) + 2;
     for (std::ptrdiff_t i = 0; i < rows_; ++i) append(string, least_ + static_cast<double>(i) / parts_, limits, rate_Hz);
   }
