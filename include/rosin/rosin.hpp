@@ -158,6 +158,7 @@
 #include <rosin/simulate/wave_kernels.hpp>
 #include <rosin/simulate/wave_local.hpp>
 #include <rosin/simulate/wave_loop.hpp>
+#include <rosin/simulate/wave_pluck.hpp>
 #include <rosin/simulate/wave_settings.hpp>
 #include <rosin/simulate/wave_string.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
