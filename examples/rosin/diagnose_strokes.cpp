@@ -118,13 +118,14 @@ rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, cons
   const double rate = strokes.front().rate_Hz;
   const rosin::band limits{0.30 * rate, 0.45 * rate};
   const rosin::pluck_scene scene = rosin::scene_of(plucks.data, plucks.best);
-  if (!scene.plain_string())
+  if (!scene.plain_string()) {
+    std::vector<std::array<std::vector<double>, 2>> moved;
+    for (const auto& s : strokes) moved.push_back(rosin::moved_ends(scene, s.force_N, limits, rate));
     return rosin::search_tension_drift(strokes.size(), [&](std::size_t i, double relative) {
-      diagnosed_stroke s = strokes[i];
-      s.calibration = rosin::at_tension(s.calibration, relative);
-      const auto motion = motion_of(s, scene, limits);
+      const auto motion = rosin::reconstruct_loaded(scene, rosin::at_tension(strokes[i].calibration, relative).at, strokes[i].force_N, moved[i], limits, rate);
       return rosin::consistency_delta(motion.force_near_N, motion.force_far_N);
     });
+  }
   std::vector<rosin::bowed_recording> takes;
   for (const auto& s : strokes) takes.push_back({s.recorded_N[0], s.recorded_N[1], s.calibration});
   return rosin::find_tension_drift(takes, limits, rate);

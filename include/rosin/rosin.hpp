@@ -39,6 +39,7 @@
 #include <rosin/acquire/sample_runs.hpp>
 #include <rosin/acquire/signal_checks.hpp>
 #include <rosin/acquire/spectrum_line.hpp>
+#include <rosin/calibrate/band_kernels.hpp>
 
 #include <rosin/condition/ac_coupling.hpp>
 #include <rosin/condition/fourier_resampler.hpp>
@@ -240,6 +241,8 @@
 #include <rosin/hardware/serial_source.hpp>
 #include <rosin/hardware/take_file.hpp>
 #include <rosin/hardware/wav_header.hpp>
+#include <rosin/math/plain_complex.hpp>
+#include <rosin/propagate/complex_dispersion.hpp>
 
 #include <rosin/report/csv.hpp>
 #include <rosin/report/npy.hpp>

@@ -5,10 +5,16 @@
 // are all that a model has to supply; whatever the physics (stiffness, loss, ends, sensors), the fit below is the same.
 //
 // Two things make the fit fast. The lines are advanced by one complex product a sample, in blocks that stay in the cache.
-// And the normal matrix of all lines and their derivatives is known in closed form: sums of t^a exp(p t) over equidistant t,
-// built by doubling (sum over 2m samples from the sum over m), which cannot cancel however small p is.
+// And the normal matrix of all lines and their derivatives is known in closed form: sums of t^a exp(p t) over n equidistant t = k h,
+// with z = exp(p h)
+//
+//     (1 - z) A_0 = 1 - z^n,   (1 - z) A_1 = z A_0 - n z^n,   (1 - z) A_2 = z (2 A_1 + A_0) - n^2 z^n,      A_a = sum k^a z^k,
+//
+// and where that would cancel, n |1 - z| being small, by doubling (the sum over 2m samples from the sum over m).
 //
 #pragma once
+
+#include <rosin/math/plain_complex.hpp>
 
 #include <Eigen/Core>
 
@@ -27,9 +33,10 @@ struct damped_line {
   std::array<std::complex<double>, 2> residue;
 };
 
-/// sum_{k=0}^{count-1} (k h)^a exp(p k h) for a = 0, 1, 2.
-/// one_step: exp(p h).
-[[nodiscard]] inline std::array<std::complex<double>, 3> power_sums_of(std::complex<double> one_step, double step_s, std::size_t count) {
+namespace detail {
+
+/// By doubling: cannot cancel however small p is.
+[[nodiscard]] inline std::array<std::complex<double>, 3> doubled_sums(std::complex<double> one_step, double step_s, std::size_t count) {
   std::array<std::complex<double>, 3> sum{};  // over `done` samples
   std::complex<double> z = 1;                 // exp(p h done)
   double t = 0;                               // h done
@@ -50,8 +57,31 @@ struct damped_line {
   }
   return sum;
 }
+
+}  // namespace detail
+
+/// What sums of powers need of exp(p t): after one step h and after all of them. Of a product of two exponentials, the products.
+struct line_steps {
+  std::complex<double> one, all;
+
+  line_steps(std::complex<double> one_step, std::complex<double> all_steps) : one{one_step}, all{all_steps} {}
+  line_steps(std::complex<double> p, double step_s, std::size_t count) : one{std::exp(p * step_s)}, all{std::exp(p * step_s * static_cast<double>(count))} {}
+};
+[[nodiscard]] inline line_steps operator*(const line_steps& a, const line_steps& b) { return {a.one * b.one, a.all * b.all}; }
+[[nodiscard]] inline line_steps conj(const line_steps& a) { return {std::conj(a.one), std::conj(a.all)}; }
+
+/// sum_{k=0}^{count-1} (k h)^a exp(p k h) for a = 0, 1, 2.
+[[nodiscard]] inline std::array<std::complex<double>, 3> power_sums(const line_steps& p, double step_s, std::size_t count) {
+  constexpr double enough = 16;
+  const auto n = static_cast<double>(count);
+  const std::complex<double> less = 1.0 - p.one;
+  if (!(std::norm(less) * n * n > enough * enough)) return detail::doubled_sums(p.one, step_s, count);
+  const std::complex<double> over = plain::reciprocal(less), last = n * p.all;
+  const std::complex<double> a0 = (1.0 - p.all) * over, a1 = (p.one * a0 - last) * over, a2 = (p.one * (2.0 * a1 + a0) - n * last) * over;
+  return {a0, step_s * a1, step_s * step_s * a2};
+}
 [[nodiscard]] inline std::array<std::complex<double>, 3> power_sums(std::complex<double> p, double step_s, std::size_t count) {
-  return power_sums_of(std::exp(p * step_s), step_s, count);
+  return power_sums(line_steps(p, step_s, count), step_s, count);
 }
 
 /// Gram matrix of the functions Re z_n, Im z_n, t Re z_n, t Im z_n (four per line, in this order), z_n = exp(s_n t),
@@ -59,12 +89,12 @@ struct damped_line {
 [[nodiscard]] inline Eigen::MatrixXd line_gram(const std::vector<damped_line>& lines, double step_s, std::size_t count) {
   const auto N = static_cast<Eigen::Index>(lines.size());
   Eigen::MatrixXd gram(4 * N, 4 * N);
-  std::vector<std::complex<double>> one_step;
-  for (const damped_line& line : lines) one_step.push_back(std::exp(line.pole * step_s));
+  std::vector<line_steps> steps;
+  for (const damped_line& line : lines) steps.emplace_back(line.pole, step_s, count);
   for (Eigen::Index i = 0; i < N; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) {
-      const auto zi = one_step[static_cast<std::size_t>(i)], zj = one_step[static_cast<std::size_t>(j)];
-      const auto same = power_sums_of(zi * zj, step_s, count), cross = power_sums_of(zi * std::conj(zj), step_s, count);
+      const line_steps &zi = steps[static_cast<std::size_t>(i)], &zj = steps[static_cast<std::size_t>(j)];
+      const auto same = power_sums(zi * zj, step_s, count), cross = power_sums(zi * conj(zj), step_s, count);
       for (int a = 0; a < 2; ++a)
         for (int b = 0; b < 2; ++b) {
           const auto u = same[static_cast<std::size_t>(a + b)], v = cross[static_cast<std::size_t>(a + b)];

@@ -12,6 +12,7 @@
 //
 #pragma once
 
+#include <rosin/propagate/complex_dispersion.hpp>
 #include <rosin/propagate/dispersion.hpp>
 #include <rosin/propagate/string_parameters.hpp>
 
@@ -27,12 +28,13 @@ struct passage_at {
   std::complex<double> force_factor = 1, a = 1, b = -1;  ///< G, alpha, beta
 
   passage_at(std::complex<double> s, double stiffness_s2, const loss_law& loss) {
-    const std::complex<double> w = s / std::complex<double>(0, 1), q = phase_rate(w, std::complex<double>(stiffness_s2)), K = stiffness_s2 * q * q;
+    const std::complex<double> w(s.imag(), -s.real()), q = phase_rate(w, stiffness_s2), K = stiffness_s2 * q * q;
     const double f = std::abs(s.imag()) / (2 * std::numbers::pi), real_w = 2 * std::numbers::pi * f;
     gamma_per_s = std::complex<double>(0, 1) * q + real_w * loss.inverse_q(f) / 2 * slowness_ratio(real_w, stiffness_s2);
-    force_factor = (1.0 + 2.0 * K) / (1.0 + K);
-    const std::complex<double> ratio = std::sqrt(1.0 + K) / force_factor;
-    const std::complex<double> bent = std::complex<double>(0, 1) * q * std::sqrt(K / (1.0 + K)) * K / (w * force_factor);
+    const std::complex<double> softer = plain::reciprocal(1.0 + K);
+    force_factor = (1.0 + 2.0 * K) * softer;
+    const std::complex<double> ratio = plain::sqrt(1.0 + K) * plain::reciprocal(force_factor);
+    const std::complex<double> bent = std::complex<double>(0, 1) * q * plain::sqrt(K * softer) * K * plain::reciprocal(w * force_factor);
     a = ratio + bent, b = -ratio + bent;
   }
 };
@@ -48,7 +50,7 @@ struct moving_response {
                                                    const std::array<std::complex<double>, 2>& z) {
   using complex = std::complex<double>;
   const std::array<complex, 2> D{std::exp(-theta[0]), std::exp(-theta[1])}, a{1.0 + p.a * z[0], 1.0 + p.a * z[1]}, b{1.0 + p.b * z[0], 1.0 + p.b * z[1]};
-  const complex round = D[0] * D[0] * D[1] * D[1], G = p.force_factor, per = 1.0 / (G * (a[0] * a[1] - b[0] * b[1] * round));
+  const complex round = D[0] * D[0] * D[1] * D[1], G = p.force_factor, per = plain::reciprocal(G * (a[0] * a[1] - b[0] * b[1] * round));
   moving_response r;
   for (std::size_t j = 0; j < 2; ++j) {
     const std::size_t o = 1 - j;

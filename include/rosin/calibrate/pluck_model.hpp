@@ -55,7 +55,7 @@ struct ringing_string {
 
 /// The band's window (band.hpp) at the complex frequency of a pole: what it makes of exp(pole t).
 [[nodiscard]] inline std::complex<double> band_weight(const band& limits, std::complex<double> pole) noexcept {
-  const std::complex<double> f = pole / std::complex<double>(0, 2 * std::numbers::pi);
+  const std::complex<double> f = std::complex<double>(pole.imag(), -pole.real()) / (2 * std::numbers::pi);
   if (f.real() <= limits.pass_Hz || f.real() >= limits.stop_Hz) return limits(f.real());
   const std::complex<double> b = (limits.stop_Hz - f) / (limits.stop_Hz - limits.pass_Hz);
   return b * b * b * b * (35.0 - b * (84.0 - b * (70.0 - b * 20.0)));

@@ -10,8 +10,8 @@
 //
 #pragma once
 
+#include <rosin/calibrate/band_kernels.hpp>
 #include <rosin/calibrate/pluck_start.hpp>
-#include <rosin/propagate/fir.hpp>
 
 #include <concepts>
 
@@ -73,14 +73,14 @@ class line_problem {
 public:
   line_problem(const std::vector<pluck_take>& takes, const Model& model, const pluck_options& options,
                const pluck_guess& guess, const Eigen::VectorXd& value, int partials, double periods, bool filtered,
-               std::array<double, 2> noise)
+               std::array<double, 2> noise, const band_kernels& kernels = {})
       : model_{model}, noise_{noise}, partials_{std::min(partials, options.most_partials)} {
     for (Eigen::Index p = 0; p < model.size(); ++p) prior_.push_back(model.prior(p, takes, guess));
     for (std::size_t i = 0; i < takes.size(); ++i) {
       const double rate = takes[i].rate_Hz;
       limits_ = options.limits_for(rate, model.string(value).partial_Hz(options.most_partials));
       fir kernel{0, {1.0}};
-      if (filtered) kernel = shortest_fir([](double) { return 1.0; }, limits_, rate, -400, 400, 1e-5);
+      if (filtered) kernel = kernels.of(limits_, rate);
       else limits_ = {0.5 * rate, 0.5 * rate};
       const int reach = std::max(kernel.last(), -kernel.first);
       const int guard = std::max(reach, static_cast<int>(2.5 / (options.stop_fraction - options.pass_fraction)));

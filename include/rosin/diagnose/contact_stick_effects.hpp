@@ -141,17 +141,20 @@ struct family_fit {
   return -std::complex<double>(0, f / (2 * std::numbers::pi)) / std::complex<double>(f0 * f0 - f * f, f * f0 / q);
 }
 
-/// The same as a recursion on a force's samples: quick, exact enough for a grid.
-[[nodiscard]] inline std::vector<double> ring(const std::vector<double>& force, double f0, double q, double rate) {
-  const double g = std::tan(std::numbers::pi * std::min(f0 / rate, 0.49)), gain = g / (1 + g / q + g * g);
-  std::vector<double> out(force.size());
-  double low = 0, band = 0;  // a state-variable filter: trapezoidal rule, resonance where it belongs
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    const double high = force[i] - (1 / q + g) * band - low;
-    const double b = gain * high + band, l = g * b + low;
-    out[i] = -b;
-    band = 2 * b - band, low = 2 * l - low;
-  }
+/// The same as a recursion on a force's samples, for some q at a time: quick, exact enough for a grid. [q][sample]
+template <std::size_t N>
+[[nodiscard]] std::array<std::vector<double>, N> ring(const std::vector<double>& force, double f0, const std::array<double, N>& q, double rate) {
+  const double g = std::tan(std::numbers::pi * std::min(f0 / rate, 0.49));
+  std::array<std::vector<double>, N> out;
+  std::array<double, N> low{}, band{}, back, gain;  // state-variable filters: trapezoidal rule, resonance where it belongs
+  for (std::size_t k = 0; k < N; ++k) back[k] = 1 / q[k] + g, gain[k] = g / (1 + g / q[k] + g * g), out[k].resize(force.size());
+  for (std::size_t i = 0; i < force.size(); ++i)
+    for (std::size_t k = 0; k < N; ++k) {
+      const double high = force[i] - back[k] * band[k] - low[k];
+      const double b = gain[k] * high + band[k], l = g * b + low[k];
+      out[k][i] = -b;
+      band[k] = 2 * b - band[k], low[k] = 2 * l - low[k];
+    }
   return out;
 }
 
@@ -178,22 +181,28 @@ struct family_fit {
   contact_hypothesis h{.effect = "rod-resonance"};
   h.free_parameters = 3;
   const detail::explained quick(bench.declared(), bench.fit().solution);
-  std::vector<std::vector<double>> force, column(bench.records().size());
+  std::vector<std::vector<double>> force;
   for (auto& r : bench.records()) force.push_back(r.force_N());
   const double rate = bench.records().front().take().rate_Hz;
   double best = 0, f_best = 1000, q_best = 10;
-  const auto attempt = [&](double f0, double q) {
-    if (!(f0 > 80 && f0 < 0.16 * rate && q > 3.9 && q < 80)) return;
-    for (std::size_t t = 0; t < force.size(); ++t) column[t] = detail::ring(force[t], f0, q, rate);
-    double size = 0;
-    const double gain = quick.by(column, size);
-    if (size > 0 && gain > best) best = gain, f_best = f0, q_best = q;
+  const auto attempt = [&]<std::size_t N>(double f0, const std::array<double, N>& qs) {
+    std::array<std::vector<std::vector<double>>, N> columns;
+    for (const auto& f : force) {
+      auto rung = detail::ring(f, f0, qs, rate);
+      for (std::size_t k = 0; k < N; ++k) columns[k].push_back(std::move(rung[k]));
+    }
+    for (std::size_t k = 0; k < N; ++k) {
+      double size = 0;
+      const double gain = quick.by(columns[k], size);
+      if (size > 0 && gain > best) best = gain, f_best = f0, q_best = qs[k];
+    }
   };
-  for (const double q : {4.0, 12.0, 40.0})
-    for (double f0 = 120; f0 < 0.16 * rate; f0 *= 1.03) attempt(f0, q);
+  for (double f0 = 120; f0 < 0.16 * rate; f0 *= 1.03) attempt(f0, std::array{4.0, 12.0, 40.0});
   for (double step = 0.02; step > 2e-4; step /= 2)
-    for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}})
-      attempt(f_best * std::exp(i * step), q_best * std::exp(15 * j * step));
+    for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}) {
+      const double f0 = f_best * std::exp(i * step), q = q_best * std::exp(15 * j * step);
+      if (f0 > 80 && f0 < 0.16 * rate && q > 3.9 && q < 80) attempt(f0, std::array{q});
+    }
   if (!(best > 0)) return detail::nothing(bench, h);
   const Eigen::Vector2d start(std::log(f_best), std::log(q_best));
   const auto found = detail::fit_family(bench, detail::rod_mobility, start, 1 / 5e-3, Eigen::Vector2d(std::log(80.0), std::log(3.9)),

@@ -88,14 +88,18 @@ inline void add_echoes(const pluck_scene& scene, const bow_point& at, const std:
 
 }  // namespace detail
 
-/// Reconstruction with the loads and the yielding ends of a scene; forces in newtons. Of the ends modes and clamping count, nothing else.
-[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N, const band& limits,
-                                                           double rate_Hz) {
+/// Z V of the ends whose modes move (newtons); empty for one that does not.
+[[nodiscard]] inline std::array<std::vector<double>, 2> moved_ends(const pluck_scene& scene, const std::array<std::vector<double>, 2>& force_N, const band& limits, double rate_Hz) {
   std::array<std::vector<double>, 2> moved;
-  for (std::size_t e = 0; e < 2; ++e) {
-    if (scene.ends[e].modes.empty()) continue;
-    moved[e] = motion_of_end(modal_termination{scene.ends[e].modes}, force_N[e], limits, rate_Hz).times_impedance_N;
-  }
+  for (std::size_t e = 0; e < 2; ++e)
+    if (!scene.ends[e].modes.empty()) moved[e] = motion_of_end(modal_termination{scene.ends[e].modes}, force_N[e], limits, rate_Hz).times_impedance_N;
+  return moved;
+}
+
+/// Reconstruction with the loads and the yielding ends of a scene; forces in newtons. Of the ends modes and clamping count, nothing else.
+/// `moved`: moved_ends().
+[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N,
+                                                           const std::array<std::vector<double>, 2>& moved, const band& limits, double rate_Hz) {
   bow_motion<double> motion;
   if (moved[0].empty() && moved[1].empty()) {
     motion = reconstructor<double>(at, limits, rate_Hz)(force_N[0], force_N[1]);
@@ -107,6 +111,10 @@ inline void add_echoes(const pluck_scene& scene, const bow_point& at, const std:
   }
   if (!scene.scatterers.empty() || scene.ends[0].clamping != 0 || scene.ends[1].clamping != 0) detail::add_echoes(scene, at, force_N, moved, limits, rate_Hz, motion);
   return motion;
+}
+[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N, const band& limits,
+                                                           double rate_Hz) {
+  return reconstruct_loaded(scene, at, force_N, moved_ends(scene, force_N, limits, rate_Hz), limits, rate_Hz);
 }
 
 }  // namespace rosin

@@ -110,8 +110,8 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
         const nearest_pinned pinned(scene, string);
         return stretching_pluck(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension, all, 400, {scene.detuning, scene.coupling}).run(stretch, wait_s, 1 / rate, stretch > 0 ? steps : 1, count);
       };
-      auto excess = run(slack, axial_N / (4 * tension)).force;
-      const auto plain = run(mean, 0).force;
+      auto excess = run(slack, axial_N / (4 * tension));
+      const auto plain = run(mean, 0);
       const double early_s = std::max({0.0, -scene.sensors[0].delay_s, -scene.sensors[1].delay_s});  // a channel may have it before the string
       const std::size_t lead = std::min(first, static_cast<std::size_t>(std::ceil(early_s * rate)));
       for (std::size_t c = 0; c < 2; ++c) {
@@ -139,11 +139,11 @@ inline pluck_effect phantom_partials_effect(const string_facts& f, const band& l
       const auto first = std::min(size, static_cast<std::size_t>(std::max(0.0, std::ceil(released))));
       const nearest_pinned pinned(scene, layout.string(v));
       const stretching_pluck string(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension, {limits.stop_Hz, limits.stop_Hz}, 120, {scene.detuning, scene.coupling});
-      const auto moves = string.run(0, std::min(1.0, static_cast<double>(first) - released) / rate, 1 / rate, 1, size - first);
+      const std::vector<double> strain = string.unstretched_strain(std::min(1.0, static_cast<double>(first) - released) / rate, 1 / rate, size - first);
       std::array<std::vector<double>, 2> felt{std::vector<double>(size), std::vector<double>(size)};
       auto& own = felt[static_cast<std::size_t>(channel)];
       std::fill_n(own.begin(), first, sensed_N * string.held_strain());
-      for (std::size_t i = first; i < size; ++i) own[i] = sensed_N * moves.strain[i - first];
+      for (std::size_t i = first; i < size; ++i) own[i] = sensed_N * strain[i - first];
       pass_sensors(felt, scene, rate);
       for (std::size_t c = 0; c < 2; ++c)
         for (std::size_t i = 0; i < size; ++i) takes[t].force_N[c][i] -= pluck_layout::gain(v, c) * felt[c][i];

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_model.hpp>
+#include <rosin/math/plain_complex.hpp>
 #include <rosin/propagate/termination.hpp>
 
 #include <array>
@@ -30,8 +31,10 @@ struct scatterer {
   double lag_s = 0;         ///< of the force behind the motion
 
   [[nodiscard]] std::complex<double> impedance(std::complex<double> s) const {
-    const std::complex<double> z = mass_s * s + resistance + spring_per_s / s;
-    return z / (1.0 + s * bond_s * z) * std::exp(-s * lag_s);
+    std::complex<double> z = mass_s * s + resistance;
+    if (spring_per_s != 0) z += spring_per_s * plain::reciprocal(s);
+    if (bond_s != 0) z *= plain::reciprocal(1.0 + s * bond_s * z);
+    return lag_s == 0 ? z : z * std::exp(-s * lag_s);
   }
 };
 
@@ -46,9 +49,10 @@ struct yielding_end {
 
   [[nodiscard]] bool rigid() const { return modes.empty() && conductance == 0 && per_free_mass_per_s == 0; }
   [[nodiscard]] std::complex<double> admittance(std::complex<double> s) const {
-    std::complex<double> sum = conductance + per_free_mass_per_s / s;
+    std::complex<double> sum = conductance;
+    if (per_free_mass_per_s != 0) sum += per_free_mass_per_s * plain::reciprocal(s);
     for (const admittance_mode& m : modes) sum += m(s);
-    return sum * std::exp(-s * lag_s);
+    return lag_s == 0 ? sum : sum * std::exp(-s * lag_s);
   }
 };
 
@@ -61,10 +65,10 @@ struct sensor_response {
   /// The pole of the resonance in the upper half plane (or one of two real ones).
   [[nodiscard]] std::complex<double> pole() const { return admittance_mode{resonance_Hz, q}.pole(); }
   [[nodiscard]] std::complex<double> operator()(std::complex<double> s) const {
-    std::complex<double> h = std::exp(-s * delay_s);
+    std::complex<double> h = delay_s == 0 ? 1.0 : std::exp(-s * delay_s);
     const double w = 2 * std::numbers::pi * resonance_Hz, corner = 2 * std::numbers::pi * corner_Hz;
-    if (w > 0) h *= w * w / (s * s + s * w / q + w * w);
-    if (corner > 0) h *= s / (s + corner);
+    if (w > 0) h *= w * w * plain::reciprocal(s * s + s * (w / q) + w * w);
+    if (corner > 0) h *= s * plain::reciprocal(s + corner);
     return h;
   }
 };

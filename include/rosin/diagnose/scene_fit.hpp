@@ -36,6 +36,7 @@ struct scene_data {
   pluck_guess guess;
   pluck_options options;
   pluck_layout layout;
+  band_kernels kernels{};
 
   /// What is free in a fit that a fit with everything free is compared with: ends were moved along with an effect that is then taken out.
   [[nodiscard]] freedom compared() const { return layout.has_ends() ? freedom::all : freedom::no_corrections; }
@@ -52,7 +53,7 @@ struct scene_data {
   }
   [[nodiscard]] line_problem<scene_plucks> problem(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value, const fit_stage& stage,
                                                    std::array<double, 2> noise) const {
-    return {undone(effects, value), scene_plucks(layout, guess.ac_coupled_Hz, effects, stage.free), options, guess, value, stage.partials, stage.periods, stage.filtered, noise};
+    return {undone(effects, value), scene_plucks(layout, guess.ac_coupled_Hz, effects, stage.free), options, guess, value, stage.partials, stage.periods, stage.filtered, noise, kernels};
   }
 };
 

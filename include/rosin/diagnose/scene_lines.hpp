@@ -22,7 +22,7 @@ inline std::complex<double> wire_factor(const pluck_scene& scene, std::complex<d
   std::complex<double> factor = 1;
   if (const double d = scene.release_duration_s; d > 0) {
     const double a = std::numbers::pi / d;
-    factor *= 0.5 * (1.0 + std::exp(-s * d)) * a * a / (a * a + s * s);
+    factor *= 0.5 * (1.0 + std::exp(-s * d)) * (a * a) * plain::reciprocal(a * a + s * s);
   }
   if (scene.width > 0) {
     const double w = std::abs(s.imag()), half = phase_rate(w, std::max(scene.string.stiffness_s2(), 0.0)) / (4 * scene.string.fundamental_Hz) * scene.width;

@@ -21,12 +21,6 @@
 
 namespace rosin {
 
-/// What stretching_pluck gives: forces on {near, far} relative to the pluck's own, and the string's mean strain (1 / 2L) integral y'^2 dx.
-struct stretched_motion {
-  std::array<std::vector<double>, 2> force;
-  std::vector<double> strain;
-};
-
 /// A plane across the one that is plucked: tuned to (1 + detuning), heard `coupling` times as strongly.
 struct second_plane {
   double detuning = 0, coupling = 0;  ///< the latter tan(angle of the pluck) tan(angle of the sensors)
@@ -47,24 +41,36 @@ public:
     put(second, position, limits, first_count, second_count, c / (1 + c), across);
   }
 
-  /// `count` values, the first `first_s` after the release (in [0, sample_s]), then every sample_s, each reached in `steps` steps.
+  /// Forces on {near, far}, relative to the pluck's own: `count` values, the first `first_s` after the release (in [0, sample_s]), then every sample_s, each reached in `steps` steps.
   /// stretch: EA / (4 T), dimensionless with k q in units of slope.
-  [[nodiscard]] stretched_motion run(double stretch, double first_s, double sample_s, std::size_t steps, std::size_t count) const {
+  [[nodiscard]] std::array<std::vector<double>, 2> run(double stretch, double first_s, double sample_s, std::size_t steps, std::size_t count) const {
     Eigen::ArrayXd q, p = Eigen::ArrayXd::Zero(held_.size()), scratch;
     double e = 0;
     for (int i = 0; i < 8; ++i) {  // the held string is stretched as well
       q = force_ * held_ * stiff_ / (stiff_ + e);
       e = stretch * squared(q);
     }
-    stretched_motion out{{std::vector<double>(count), std::vector<double>(count)}, std::vector<double>(count)};
+    std::array<std::vector<double>, 2> out{std::vector<double>(count), std::vector<double>(count)};
     const double first_step_s = first_s / static_cast<double>(steps), step_s = sample_s / static_cast<double>(steps);
     const half_turn first_turn = half_turn_in(first_step_s), turn = half_turn_in(step_s);
     for (std::size_t k = 0; k < steps; ++k) step(q, p, scratch, first_turn, stretch, first_step_s);
     for (std::size_t i = 0; i < count; ++i) {
-      const double sum = squared(q);
-      scratch = weight_ * (stiff_ + stretch * sum) * q;
-      out.force[0][i] = scratch.sum() / force_, out.force[1][i] = (sign_ * scratch).sum() / force_, out.strain[i] = sum / 4;
+      scratch = weight_ * (stiff_ + stretch * squared(q)) * q;
+      out[0][i] = scratch.sum() / force_, out[1][i] = (sign_ * scratch).sum() / force_;
       for (std::size_t k = 0; k < steps; ++k) step(q, p, scratch, turn, stretch, step_s);
+    }
+    return out;
+  }
+
+  /// The string's mean strain (1 / 2L) integral y'^2 dx where its tension stays as it is, at the same instants.
+  [[nodiscard]] std::vector<double> unstretched_strain(double first_s, double sample_s, std::size_t count) const {
+    const half_turn begin = half_turn_in(2 * first_s), turn = half_turn_in(2 * sample_s);
+    Eigen::ArrayXd q = force_ * held_, p = Eigen::ArrayXd::Zero(held_.size()), scratch;
+    begin(q, p, scratch);
+    std::vector<double> out(count);
+    for (double& strain : out) {
+      strain = squared(q) / 4;
+      turn(q, p, scratch);
     }
     return out;
   }

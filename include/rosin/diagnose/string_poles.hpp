@@ -24,7 +24,7 @@ inline std::complex<double> mode_zeros(const pluck_scene& scene, std::complex<do
   for (const yielding_end& end : scene.ends)
     for (const admittance_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
-      if (std::abs(w - around.imag()) < reach) value *= (s * s + s * w / m.q + w * w) / (w * w);
+      if (std::abs(w - around.imag()) < reach) value *= (s * s + s * (w / m.q) + w * w) * (1 / (w * w));
     }
   return value;
 }
@@ -42,14 +42,14 @@ inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>&
     if (settled[i]) continue;
     const std::complex<double> s = roots[i], h(0, 1e-4 * spacing);
     const std::complex<double> above = characteristic(scene, s + h, strength), below = characteristic(scene, s - h, strength);
-    const std::complex<double> newton = (above + below) * h * reciprocal(above - below);  // value over slope
+    const std::complex<double> newton = (above + below) * h * plain::reciprocal(above - below);  // value over slope
     std::complex<double> repulsion = 0;
     for (std::size_t j = i > neighbours ? i - neighbours : 0; j < std::min(roots.size(), i + neighbours + 1); ++j)
-      if (j != i && std::norm(roots[i] - roots[j]) > 1e-18 * spacing * spacing) repulsion += reciprocal(roots[i] - roots[j]);
+      if (j != i && std::norm(roots[i] - roots[j]) > 1e-18 * spacing * spacing) repulsion += plain::reciprocal(roots[i] - roots[j]);
     // The roots that are not sought stand in a regular comb; only what a neighbour adds beyond it must repel.
-    std::complex<double> step = newton * reciprocal(1.0 - newton * repulsion);
-    if (std::abs(newton) < 0.02 * spacing || !std::isfinite(std::norm(step))) step = newton;
-    const double length = std::abs(step) / spacing;
+    std::complex<double> step = newton * plain::reciprocal(1.0 - newton * repulsion);
+    if (plain::abs(newton) < 0.02 * spacing || !std::isfinite(std::norm(step))) step = newton;
+    const double length = plain::abs(step) / spacing;
     roots[i] -= length > 0.3 ? step * (0.3 / length) : step;
     settled[i] = length < 1e-5;  // the next correction would be of the order of its square
     largest = std::max(largest, length);
@@ -127,7 +127,7 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
     const std::complex<double> h(0, 1e-4 * spacing);
     const loop_response above = close_loop(scene, position, s + h), below = close_loop(scene, position, s - h);
     const std::complex<double> up = detail::mode_zeros(scene, s + h, s, spacing), down = detail::mode_zeros(scene, s - h, s, spacing);  // the loop as such is straight only far from a mode
-    const std::complex<double> over = detail::reciprocal((above.determinant * up - below.determinant * down) * s) * (-2.0 * h);
+    const std::complex<double> over = plain::reciprocal((above.determinant * up - below.determinant * down) * s) * (-2.0 * h);
     damped_line line{s, {}};
     for (std::size_t e = 0; e < 2; ++e) line.residue[e] = over * (above.times_determinant[e] * up + below.times_determinant[e] * down);
     lines.push_back(line);

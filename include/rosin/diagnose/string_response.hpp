@@ -28,6 +28,7 @@
 #pragma once
 
 #include <rosin/diagnose/pluck_scene.hpp>
+#include <rosin/propagate/complex_dispersion.hpp>
 #include <rosin/propagate/dispersion.hpp>
 
 #include <Eigen/Dense>
@@ -50,9 +51,6 @@ struct sine_cosine {
   }
 };
 
-/// 1 / z without the guards against overflow that a library's division has.
-[[nodiscard]] inline std::complex<double> reciprocal(std::complex<double> z) { return std::conj(z) / std::norm(z); }
-
 }  // namespace detail
 
 /// The string of a scene at one complex frequency.
@@ -62,26 +60,26 @@ public:
 
   string_at(const pluck_scene& scene, complex s) : s_{s}, length_{0.5 / scene.string.fundamental_Hz} {
     const double epsilon = std::max(scene.string.stiffness_s2(), 1e-30);
-    const complex w = s / complex(0, 1);
-    q_ = phase_rate(w, complex(epsilon));
+    const complex w(s.imag(), -s.real());
+    q_ = phase_rate(w, epsilon);
     const double f = std::abs(s.imag()) / (2 * std::numbers::pi), real_w = 2 * std::numbers::pi * f;
     q_ -= complex(0, real_w * scene.string.loss.inverse_q(f) / 2 * slowness_ratio(real_w, epsilon));
     modulus_ = complex(1, scene.string.loss.inverse_q(f) / 2);
-    load_s_ = s / (1.0 + scene.loaded_loss * (modulus_ - 1.0));
+    load_s_ = s * plain::reciprocal(1.0 + scene.loaded_loss * (modulus_ - 1.0));
     own_loss_ = (1 - scene.loaded_loss) * modulus_.imag() / std::numbers::pi;
     K_ = epsilon * q_ * q_;
-    kappa_ = std::sqrt(q_ * q_ + 1 / epsilon);
+    kappa_ = plain::sqrt(q_ * q_ + 1 / epsilon);
     epsilon_ = epsilon;
     const detail::sine_cosine whole(q_ * length_);
     sine_ = whole.sine, cosine_ = whole.cosine;
-    stiff_ = detail::reciprocal(1.0 + 2.0 * K_);
+    stiff_ = plain::reciprocal(1.0 + 2.0 * K_);
   }
 
   /// sin(qL) times the velocity at b for a unit force at a (fractions), in units of 1/Z.
   [[nodiscard]] complex mobility(double a, double b) const {
     const double low = std::min(a, b) * length_, high = (1 - std::max(a, b)) * length_, gap = length_ - low - high;
     const complex decay = (fading(gap) - fading(gap + 2 * low) - fading(gap + 2 * high)) / 2.0;
-    const complex m = s_ / modulus_ * stiff_ * (sine_of(low) * sine_of(high) * detail::reciprocal(q_) - sine_ * decay * detail::reciprocal(kappa_));
+    const complex m = s_ * plain::reciprocal(modulus_) * stiff_ * (sine_of(low) * sine_of(high) * plain::reciprocal(q_) - sine_ * decay * plain::reciprocal(kappa_));
     return a == b ? m - own_loss_ * sine_ : m;
   }
   /// sin(qL) times the force on end 0 or 1 for a unit force at a.
@@ -209,7 +207,7 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
   const Eigen::Index n = A.rows();
   if (n == 0) return sine;
   if (n == 1) return A(0, 0);
-  if (n == 2) return (A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0)) * reciprocal(sine);
+  if (n == 2) return (A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0)) * plain::reciprocal(sine);
   return A.determinant() / std::pow(sine, static_cast<int>(n) - 1);
 }
 
@@ -245,10 +243,10 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
     for (int o = 0; o < 2; ++o) out(o, count + ends.count + c) = o == clamped[c] ? string.own_end_by_moment() : string.other_end_by_moment();
   }
   loop_response r{detail::determinant_of(A, string.sine()), {}};
-  if (n == 1) drive *= detail::reciprocal(A(0, 0));
+  if (n == 1) drive *= plain::reciprocal(A(0, 0));
   else drive = A.partialPivLu().solve(drive).eval();
   for (int e = 0; e < 2; ++e)
-    r.times_determinant[static_cast<std::size_t>(e)] = r.determinant * detail::reciprocal(string.sine()) * (string.end_force(e, position) + (out.row(e) * drive)(0));
+    r.times_determinant[static_cast<std::size_t>(e)] = r.determinant * plain::reciprocal(string.sine()) * (string.end_force(e, position) + (out.row(e) * drive)(0));
   return r;
 }
 

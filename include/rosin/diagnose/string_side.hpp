@@ -14,6 +14,7 @@
 #pragma once
 
 #include <rosin/diagnose/pluck_scene.hpp>
+#include <rosin/math/plain_complex.hpp>
 #include <rosin/propagate/dispersion.hpp>
 
 #include <algorithm>
@@ -39,8 +40,9 @@ struct side_waves {
   std::complex<double> bent;   ///< i b, the near field of an end that moves
   double ahead = 0, held = 1;  ///< a and h, of an end that resists turning
 
-  [[nodiscard]] std::complex<double> sinh(double place_s) const { return held * std::sinh(gamma * place_s - std::complex<double>(0, ahead)); }
-  [[nodiscard]] std::complex<double> cosh(double place_s) const { return held * std::cosh(gamma * place_s - std::complex<double>(0, ahead)); }
+  /// Of gamma x - i a.
+  [[nodiscard]] plain::hyperbolic at(double place_s) const { return plain::hyperbolic(gamma * place_s - std::complex<double>(0, ahead)); }
+  [[nodiscard]] std::complex<double> sinh(double place_s) const { return held * at(place_s).sinh; }
 };
 [[nodiscard]] inline side_waves waves_at(double f_Hz, double stiffness_s2, std::complex<double> gamma, double clamping = 0) {
   const double w = 2 * std::numbers::pi * f_Hz, G = rosin::force_factor(w, stiffness_s2), wave = wave_impedance_ratio(w, stiffness_s2);
@@ -55,8 +57,8 @@ struct side_waves {
   std::vector<std::pair<double, std::complex<double>>> returned;
   for (const auto& [place, load] : loads) {
     if (place >= place_s) break;
-    std::complex<double> zv = force * s.sinh(place) / s.impedance_ratio + moved * std::cosh(s.gamma * place);
-    for (const auto& [before, g] : returned) zv -= g * std::sinh(s.gamma * (place - before)) / (s.force_factor * s.impedance_ratio);
+    std::complex<double> zv = force * s.sinh(place) / s.impedance_ratio + moved * plain::hyperbolic(s.gamma * place).cosh;
+    for (const auto& [before, g] : returned) zv -= g * plain::hyperbolic(s.gamma * (place - before)).sinh / (s.force_factor * s.impedance_ratio);
     const std::complex<double> z = load.impedance({0, s.omega});
     returned.emplace_back(place, -z * zv / (1.0 + z * s.dent));
   }
@@ -88,16 +90,17 @@ struct string_side {
     std::complex<double> velocity, force;
   };
   [[nodiscard]] state at(double place_s, const detail::side_waves& s) const {
-    const std::complex<double> sinh = std::sinh(s.gamma * place_s), cosh = std::cosh(s.gamma * place_s);
-    state out{s.sinh(place_s), s.cosh(place_s)};
+    const plain::hyperbolic own = s.at(place_s), pinned = s.ahead == 0 ? own : plain::hyperbolic(s.gamma * place_s);
+    state out{s.held * own.sinh, s.held * own.cosh};
     std::complex<double> moved = 0;
     for (const admittance_mode& m : end_modes) moved += m({0, s.omega});
     const std::complex<double> lead = moved * (s.impedance_ratio / s.force_factor), bent = moved * s.bent;
-    out.velocity += lead * cosh + bent * sinh;
-    out.force += lead * sinh + bent * cosh;
+    out.velocity += lead * pinned.cosh + bent * pinned.sinh;
+    out.force += lead * pinned.sinh + bent * pinned.cosh;
     for (const auto& [place, g] : detail::returned_by_loads(loads, s, place_s, 1, moved)) {
-      out.velocity -= g * std::sinh(s.gamma * (place_s - place)) / s.force_factor;
-      out.force -= g * std::cosh(s.gamma * (place_s - place)) / s.force_factor;
+      const plain::hyperbolic onwards(s.gamma * (place_s - place));
+      out.velocity -= g * onwards.sinh / s.force_factor;
+      out.force -= g * onwards.cosh / s.force_factor;
     }
     return out;
   }

@@ -125,7 +125,8 @@ private:
     const complex g(0.5 * w * take_.inverse_q * slowness_ratio(w, eps), phase_rate(w, eps));
     const complex near_field(0, -near_field_ratio(w, eps) / (2 * Z * force_factor(w, eps)));
     const double a = take_.delay_s[0] - d, b = take_.delay_s[1] - d;
-    const complex cosh_d = std::cosh(g * d), sinh_d = std::sinh(g * d), tanh_d = sinh_d * std::conj(cosh_d) / (std::norm(cosh_d) + pole_width * pole_width);
+    const plain::hyperbolic half(g * d);
+    const complex cosh_d = half.cosh, sinh_d = half.sinh, tanh_d = sinh_d * std::conj(cosh_d) / (std::norm(cosh_d) + pole_width * pole_width);
     const auto rolls = torsion(f);
     std::array<complex, 8> out;
     for (const std::size_t side : {0U, 1U}) {

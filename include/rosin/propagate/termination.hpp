@@ -11,6 +11,8 @@
 //
 #pragma once
 
+#include <rosin/math/plain_complex.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -40,7 +42,7 @@ struct admittance_mode {
 
   [[nodiscard]] std::complex<double> operator()(std::complex<double> s) const noexcept {
     const double w = 2 * std::numbers::pi * frequency_Hz;
-    return per_mass_per_s * s / (s * s + s * w / q + w * w);
+    return per_mass_per_s * s * plain::reciprocal(s * s + s * (w / q) + w * w);
   }
   /// The pole with the positive imaginary part; of two real ones the slower.
   [[nodiscard]] std::complex<double> pole() const noexcept {

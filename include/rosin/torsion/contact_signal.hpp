@@ -53,14 +53,20 @@ public:
   /// Transfer functions are asked at 0 and multiples of this.
   [[nodiscard]] double bin_Hz() const noexcept { return rate_Hz_ / static_cast<double>(fft_.size()); }
 
-  /// The signal through a transfer function of the frequency in Hz and the window; the transfer function is asked inside it only.
+  /// The signal through a transfer function of the frequency in Hz and the window; the transfer function is asked inside it only, all at
+  /// once if it can be (on_grid).
   template <class Transfer>
   [[nodiscard]] std::vector<double> through(const smooth_window& window, const Transfer& transfer) {
     const double step = bin_Hz();
-    for (std::size_t k = 0; k < bins_.size(); ++k) {
-      const double f = static_cast<double>(k) * step, w = window(f);
-      work_[k] = w > 0 ? bins_[k] * (w * std::complex<double>(transfer(f))) : std::complex<double>(0);
+    look_through(window);
+    const std::size_t used = windowed_.size();
+    if constexpr (requires { transfer.on_grid(step, used); }) {
+      const auto values = transfer.on_grid(step, used);
+      for (std::size_t k = 0; k < used; ++k) work_[k] = windowed_[k] * values[k];
+    } else {
+      for (std::size_t k = 0; k < used; ++k) work_[k] = windowed_[k] * std::complex<double>(transfer(static_cast<double>(k) * step));
     }
+    std::fill(work_.begin() + static_cast<std::ptrdiff_t>(used), work_.end(), 0.0);
     fft_.inverse(work_.data(), buffer_.data());
     const double steady = first_ * std::complex<double>(transfer(0.0)).real();
     std::vector<double> out(samples_);
@@ -69,13 +75,26 @@ public:
   }
 
 private:
+  /// The spectrum through a window, as far as the window reaches: kept until another is asked for.
+  void look_through(const smooth_window& window) {
+    if (!windowed_.empty() && window.edge_Hz == edge_Hz_) return;
+    edge_Hz_ = window.edge_Hz;
+    windowed_.clear();
+    for (std::size_t k = 0; k < bins_.size(); ++k) {
+      const double w = window(static_cast<double>(k) * bin_Hz());
+      if (!(w > 0)) break;
+      windowed_.push_back(w * bins_[k]);
+    }
+  }
+
   static std::size_t padding(double rate_Hz, double memory_s) { return static_cast<std::size_t>(2 * memory_s * rate_Hz) + 64; }
 
   std::size_t samples_;
   double rate_Hz_, first_;
   Fft fft_;
   std::vector<double> buffer_;
-  std::vector<std::complex<double>> bins_, work_;
+  std::vector<std::complex<double>> bins_, work_, windowed_;
+  double edge_Hz_ = 0;
 };
 
 }  // namespace rosin

@@ -48,6 +48,12 @@ struct torsion_at_contact {
     if (damping == torsion_damping::constant_q) return guide(f);
     return modes(f) + std::complex<double>(0, 2 * std::numbers::pi * f * rest_m_N);
   }
+  [[nodiscard]] std::vector<std::complex<double>> on_grid(double step_Hz, std::size_t count) const {
+    if (damping == torsion_damping::constant_q) return guide.on_grid(step_Hz, count);
+    auto out = modes.on_grid(step_Hz, count);
+    for (std::size_t k = 0; k < count; ++k) out[k] += std::complex<double>(0, 2 * std::numbers::pi * step_Hz * static_cast<double>(k) * rest_m_N);
+    return out;
+  }
 };
 
 struct torsion_fit_result {
@@ -106,9 +112,21 @@ struct torsion_state {
   return cost;
 }
 
+/// A record of at most so many of another's samples that count, with a little of what was before.
+[[nodiscard]] inline stick_take first_part(const stick_record& record, std::size_t samples) {
+  stick_take part = record.take();
+  const std::size_t begin = record.begin(), from = begin - std::min(begin, static_cast<std::size_t>(0.03 * part.rate_Hz));
+  const std::size_t to = std::min(record.size(), begin + samples + record.reach());
+  part.force_N = record.known(record.take().force_N).subspan(from, to - from);
+  part.velocity_m_s = record.known(record.take().velocity_m_s).subspan(from, to - from);
+  part.start_s = static_cast<double>(begin - from) / part.rate_Hz;
+  return part;
+}
+
 /// The likeliest starting points, best first.
-[[nodiscard]] inline std::vector<torsion_values> torsion_starts(stick_record& record, std::size_t wanted) {
-  const std::size_t begin = record.begin(), end = std::min(record.end(), begin + 12000);
+[[nodiscard]] inline std::vector<torsion_values> torsion_starts(const stick_record& whole, std::size_t wanted) {
+  stick_record record(first_part(whole, 12000));
+  const std::size_t begin = record.begin(), end = record.end();
   const auto& slope = record.compliance()[0];
   std::vector<std::pair<double, torsion_values>> found;
   for (const double q : {13.0, 35.0})

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <vector>
 
 namespace rosin {
 
@@ -36,6 +37,23 @@ struct torsion_modes {
       sum += std::complex<double>(re * scale, -im * scale);
     }
     return std::complex<double>(0, w) * sum / (impedance_Ns_m * tau);
+  }
+
+  /// The same at 0, step_Hz, ... (count - 1) step_Hz, mode by mode.
+  [[nodiscard]] std::vector<std::complex<double>> on_grid(double step_Hz, std::size_t count) const {
+    const double step = 2 * std::numbers::pi * step_Hz, tau = delay_s[0] + delay_s[1], first = std::numbers::pi / tau;
+    std::vector<double> real(count, 0.0), imag(count, 0.0);
+    for (int n = 1; n <= modes; ++n) {
+      const double wn = n * first, wn2 = wn * wn, lossy = wn / q, moved = 1 - std::cos(2 * n * std::numbers::pi * delay_s[0] / tau);
+      for (std::size_t k = 0; k < count; ++k) {
+        const double w = step * static_cast<double>(k), re = wn2 - w * w, im = w * lossy, scale = moved / (re * re + im * im);
+        real[k] += re * scale, imag[k] -= im * scale;
+      }
+    }
+    std::vector<std::complex<double>> out(count);
+    const double per = step / (impedance_Ns_m * tau);
+    for (std::size_t k = 0; k < count; ++k) out[k] = per * static_cast<double>(k) * std::complex<double>(-imag[k], real[k]);
+    return out;
   }
 
   /// Compliance of the modes left out, m/N: what all modes yield under a steady force, less those of the sum.

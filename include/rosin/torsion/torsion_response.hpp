@@ -14,6 +14,7 @@
 #pragma once
 
 #include <rosin/math/fft.hpp>
+#include <rosin/math/plain_complex.hpp>
 
 #include <algorithm>
 #include <array>
@@ -39,6 +40,20 @@ struct torsion_waveguide {
     };
     const std::complex<double> a = round_trip(delay_s[0]), b = round_trip(delay_s[1]);
     return (1.0 - a) * (1.0 - b) / (1.0 - a * b) / (2 * impedance_Ns_m);
+  }
+
+  /// The same at 0, step_Hz, ... (count - 1) step_Hz: one product from a frequency to the next.
+  [[nodiscard]] std::vector<std::complex<double>> on_grid(double step_Hz, std::size_t count) const {
+    constexpr std::size_t anew = 256;
+    const double w = 2 * std::numbers::pi * step_Hz;
+    std::array<std::complex<double>, 2> rate, turn, at;
+    for (std::size_t j = 0; j < 2; ++j) rate[j] = -2 * w * delay_s[j] * std::complex<double>(1 / (2 * q), 1), turn[j] = std::exp(rate[j]);
+    std::vector<std::complex<double>> out(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t j = 0; j < 2; ++j) at[j] = k % anew == 0 ? std::exp(rate[j] * static_cast<double>(k)) : at[j] * turn[j];
+      if (k > 0) out[k] = (1.0 - at[0]) * (1.0 - at[1]) * plain::reciprocal((1.0 - at[0] * at[1]) * (2 * impedance_Ns_m));
+    }
+    return out;
   }
 
   /// How long what happened is felt: until an impulse has died to `rest` of its size.
@@ -67,7 +82,8 @@ template <class Fft = eigen_fft<double>>
   Fft fft(size);
   std::vector<std::complex<double>> bins(size / 2 + 1);
   fft.forward(padded.data(), bins.data());
-  for (std::size_t k = 0; k < bins.size(); ++k) bins[k] *= waveguide(static_cast<double>(k) * rate_Hz / static_cast<double>(size));
+  const auto responses = waveguide.on_grid(rate_Hz / static_cast<double>(size), bins.size());
+  for (std::size_t k = 0; k < bins.size(); ++k) bins[k] *= responses[k];
   fft.inverse(bins.data(), padded.data());
   padded.resize(force_N.size());
   return padded;

@@ -34,6 +34,14 @@ TEST_CASE("sums of powers by doubling are the sums term by term, for any count")
     }
 }
 
+TEST_CASE("sums of powers in closed form and by doubling are the same where one takes over from the other") {
+  constexpr std::size_t count = 200000;
+  for (const complex p : {complex(-3, 0), complex(-9, 3), complex(-11, 5), complex(-2, 40), complex(-30, 4000), complex(-900, 350e3)}) {
+    const auto sums = rosin::power_sums(p, step_s, count), doubled = rosin::detail::doubled_sums(std::exp(p * step_s), step_s, count);
+    for (std::size_t a = 0; a < 3; ++a) CHECK(std::abs(sums[a] - doubled[a]) <= 2e-10 * std::abs(doubled[a]));
+  }
+}
+
 TEST_CASE("the Gram matrix is what summing the functions gives") {
   constexpr std::size_t count = 700;
   const Eigen::MatrixXd gram = rosin::line_gram(lines, step_s, count);

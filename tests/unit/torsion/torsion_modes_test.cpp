@@ -46,3 +46,9 @@ TEST_CASE("torsion modes: the oscillators that the simulation steps") {
   mine.impedance_Ns_m = 3.5 * string.impedance_Ns_m();
   CHECK(std::abs(mine(f) - sum) < 1e-9 * std::abs(sum));
 }
+
+TEST_CASE("torsion modes: on a grid of frequencies they are what they are at each of them") {
+  const auto modes = at(15);
+  const auto grid = modes.on_grid(0.7, 90000);
+  for (std::size_t k = 0; k < grid.size(); k += 97) CHECK(std::abs(grid[k] - modes(0.7 * static_cast<double>(k))) <= 1e-11 * std::abs(grid[k]));
+}
