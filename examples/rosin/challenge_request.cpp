@@ -43,6 +43,21 @@ hidden_effect held_against_turning(challenge_rig& r, source& s, double k) {
   return {{}, both ? "both" : name_of_side(e), "", {{"clamping", clamping}}};
 }
 
+/// An end on something soft that swallows what comes: rubber under the bridge.
+hidden_effect damped_end(challenge_rig& r, source& s, double k) {
+  const std::size_t e = side(s);
+  const double z = r.base.rig.string.impedance_Ns_m(), conductance = k * evenly_in_log(s, 3e-4, 1e-2), corner = evenly_in_log(s, 5, 60);
+  r.burden.ends[e].modes.push_back(rosin::overdamped_mode(conductance, corner, 1e6));
+  return {{}, name_of_side(e), "", {{"resistance_Ns_m", z / conductance}, {"corner_Hz", corner}}};
+}
+
+/// An end that is heavy and softly held: it moves as a mass does at all of the string's partials.
+hidden_effect heavy_end(challenge_rig& r, source& s, double k) {
+  const std::size_t e = side(s);
+  r.burden.supports[e] = {evenly_in_log(s, 0.02, 0.2) / k, evenly_in_log(s, 40, 0.5 * r.base.rig.string.fundamental_Hz), s.uniform(8, 35)};
+  return {"support-resonance", name_of_side(e), "", {{"frequency_Hz", r.burden.supports[e].frequency_Hz}, {"q", r.burden.supports[e].quality}, {"mass_kg", r.burden.supports[e].mass_kg}}};
+}
+
 /// Of the air's boundary layer.
 hidden_effect in_air(challenge_rig& r, source& s, double k) {
   const double loss = k * evenly_in_log(s, 2e-3, 1e-2);
@@ -89,7 +104,7 @@ hidden_effect creeping(challenge_rig& r, source& s, double k) {
 const std::map<std::string, std::function<hidden_effect(challenge_rig&, source&, double)>>& requests() {
   static const std::map<std::string, std::function<hidden_effect(challenge_rig&, source&, double)>> all{
       {"air-loss", in_air},          {"clamped-end", held_against_turning}, {"clock-drift", two_clocks},  {"creep", creeping},          {"dropouts", cut_out}, {"finite-pluck-width", wide_wire},
-      {"phantom-partials", felt_tension}, {"pluck-position", plucked_elsewhere}, {"rattle", beside_the_string}, {"sympathetic-string", another_string}};
+      {"massive-end", heavy_end}, {"phantom-partials", felt_tension}, {"pluck-position", plucked_elsewhere}, {"rattle", beside_the_string}, {"resistive-end", damped_end}, {"sympathetic-string", another_string}};
   return all;
 }
 
@@ -108,7 +123,7 @@ std::optional<hidden_effect> hidden_on_request(const std::string& name, challeng
   const auto found = requests().find(name);
   if (found == requests().end()) return std::nullopt;
   auto out = found->second(rig, from, strength);
-  out.name = name;
+  if (out.name.empty()) out.name = name;
   return out;
 }
 

@@ -90,6 +90,10 @@ const std::map<std::string, put>& can_be_put() {
        [](effect e, get p, plan to) {
          to.burden.string.ends[p.side(e.end)].modes.push_back({p("frequency_Hz"), p("q"), to.rig.string.impedance_Ns_m() / p("mass_kg")});
        }},
+      {"resistive-end",
+       [](effect e, get p, plan to) {
+         to.burden.string.ends[p.side(e.end)].modes.push_back(rosin::overdamped_mode(to.rig.string.impedance_Ns_m() / p("resistance_Ns_m"), p("corner_Hz"), 1e6));
+       }},
       {"clamped-end", put_clamping},
       {"sympathetic-string", [](effect e, get p, plan to) { put_other_string(e, p, to); }},
       {"ac-coupling", [](effect, get p, plan to) { put_ac_coupling(p, to); }},

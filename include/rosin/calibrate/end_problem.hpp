@@ -142,12 +142,11 @@ struct held_string {
   held_string(const end_model& m, const std::vector<admittance_mode>& modes, double position, double one_way_s) {
     for (std::size_t e = 0; e < 2; ++e)
       if (m.known[e]) yields_s[e] = (m.known[e](1e-2) / 1e-2).real();
-    for (std::size_t k = 0; k < modes.size(); ++k) yields_s[m.mode_end[k]] += compliance_s(modes[k]);
+    for (std::size_t k = 0; k < modes.size(); ++k) yields_s[m.mode_end[k]] += modes[k].compliance_s();
     length_s = one_way_s + yields_s[0] + yields_s[1];
     force[0] = ((1 - position) * one_way_s + yields_s[1]) / length_s;
     force[1] = 1 - force[0];
   }
-  [[nodiscard]] static double compliance_s(const admittance_mode& m) { return m.per_mass_per_s / std::pow(2 * std::numbers::pi * m.frequency_Hz, 2); }
   [[nodiscard]] double by_compliance(std::size_t channel, std::size_t end) const { return (channel == end ? -force[channel] : 1 - force[channel]) / length_s; }
 };
 
@@ -213,7 +212,7 @@ inline end_problem::rows end_problem::at(const end_model& m, const Eigen::Vector
       const admittance_mode& mode = modes[k];
       const double w = 2 * std::numbers::pi * mode.frequency_Hz;
       const complex z = by_A * b.a.by_admittance[c][m.mode_end[k]] * mode(s), per = z / (s * s + s * w / mode.q + w * w);
-      const complex softer = held.by_compliance(c, m.mode_end[k]) * held.compliance_s(mode) * by_still;
+      const complex softer = held.by_compliance(c, m.mode_end[k]) * mode.compliance_s() * by_still;
       put(m.mode_at(k), -per * (s * w / mode.q + 2 * w * w) - 2.0 * softer);
       put(m.mode_at(k) + 1, per * s * w / mode.q);
       put(m.mode_at(k) + 2, z + softer);

@@ -94,11 +94,20 @@ inline pluck_effect support_resonance_effect(const string_facts& f, int end) {
   return e;
 }
 
-/// An end that takes energy at all frequencies alike.
+/// An end that takes energy at all frequencies alike: a damper, and beside it the spring without which nothing would hold the string under the wire
+/// (K / R is 2 pi corner).
 inline pluck_effect resistive_end_effect(const string_facts& f, int end) {
-  const double Z = detail::unit_of(f);
-  return {"resistive-end", end, true, {{"conductance_m_sN", 0, 0.5 / Z, 1e-8 / Z}}, {{1e-6 / Z}}, 0,
-          [Z, end](pluck_scene& s, const double* v, int) { s.ends[static_cast<std::size_t>(end)].conductance += v[0] * Z; }};
+  const double Z = detail::unit_of(f), lag = detail::most_lag_s;
+  pluck_effect e{"resistive-end", end, true,
+                 {{"conductance_m_sN", 1e-7 / Z, 0.5 / Z, 1e-5, true}, {"corner_Hz", 1e-3 * f.fundamental_Hz, 0.5 * f.fundamental_Hz, 1e-4, true}, {"lag_s", -lag, lag, 1e-9, false, -1, false, true}}, {}, -1,
+                 [Z, end](pluck_scene& s, const double* v, int) {
+                   yielding_end& there = s.ends[static_cast<std::size_t>(end)];
+                   there.modes.push_back(overdamped_mode(v[0] * Z, v[1]));
+                   there.lag_s += v[2];
+                 }};
+  for (const double relative : detail::geometric(3e-6, 0.05, 5))
+    for (const double slow : {0.01, 0.1}) e.starts.push_back({relative / Z, slow * f.fundamental_Hz, 0});
+  return e;
 }
 
 /// An end that is a mass without a spring.

@@ -38,19 +38,18 @@ struct scatterer {
   }
 };
 
-/// A termination that gives way: Z Y(s) = (sum of modes + Z / R + Z / (M s)) exp(-s lag). Far above a mode the lag is all that is seen
+/// A termination that gives way: Z Y(s) = (sum of modes + Z / (M s)) exp(-s lag). Far above a mode the lag is all that is seen
 /// of the modes beyond: -lag / M, a part of Y in phase with the force.
 struct yielding_end {
   std::vector<admittance_mode> modes;
-  double conductance = 0;         ///< Z / R
   double per_free_mass_per_s = 0; ///< Z / M of an end that is nothing but a mass
   double lag_s = 0;               ///< of the motion behind the force; may be slightly negative
   double clamping = 0;            ///< against turning, k / (k + sqrt(B T)) with the end's k in N m; 0: pinned, 1: clamped. A stiff string only
 
-  [[nodiscard]] bool rigid() const { return modes.empty() && conductance == 0 && per_free_mass_per_s == 0; }
+  [[nodiscard]] bool rigid() const { return modes.empty() && per_free_mass_per_s == 0; }
   [[nodiscard]] std::complex<double> admittance(std::complex<double> s) const {
-    std::complex<double> sum = conductance;
-    if (per_free_mass_per_s != 0) sum += per_free_mass_per_s * plain::reciprocal(s);
+    std::complex<double> sum = 0;
+    if (per_free_mass_per_s != 0) sum = per_free_mass_per_s * plain::reciprocal(s);
     for (const admittance_mode& m : modes) sum += m(s);
     return lag_s == 0 ? sum : sum * std::exp(-s * lag_s);
   }
@@ -126,10 +125,15 @@ struct nearest_pinned {
   [[nodiscard]] double place(double position) const { return (position - begin) / whole; }
 };
 
-/// Forces on the ends while the wire holds the string with 1 N, near and far.
+/// Forces on the ends while the wire holds the string with 1 N, near and far. Modes that yield are so much more string; what moves as a mere mass is
+/// taken to be held.
 [[nodiscard]] inline std::array<double, 2> held_forces(const pluck_scene& scene, double position) {
-  const double near = shortened_by(scene.string, scene.ends[0].clamping), far = shortened_by(scene.string, scene.ends[1].clamping);
-  return static_forces((position - near) / (1 - near - far));
+  std::array<double, 2> longer{};  // by fractions of the length
+  for (std::size_t e = 0; e < 2; ++e) {
+    longer[e] = -shortened_by(scene.string, scene.ends[e].clamping);
+    for (const admittance_mode& m : scene.ends[e].modes) longer[e] += m.compliance_s() * 2 * scene.string.fundamental_Hz;
+  }
+  return static_forces((position + longer[0]) / (1 + longer[0] + longer[1]));
 }
 
 }  // namespace rosin

@@ -38,6 +38,7 @@ inline std::vector<damped_line> string_lines(const pluck_scene& scene, double po
   std::vector<damped_line> lines = decay_lines(scene, position, poles);
   for (damped_line& line : lines) {
     const double f = std::abs(line.pole.imag()) / (2 * std::numbers::pi);
+    if (f == 0) continue;
     const std::complex<double> turn(1, scene.string.convention * scene.string.loss.inverse_q(f) / 2);
     for (auto& r : line.residue) r *= turn;
   }

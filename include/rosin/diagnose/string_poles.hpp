@@ -24,7 +24,7 @@ inline std::complex<double> mode_zeros(const pluck_scene& scene, std::complex<do
   for (const yielding_end& end : scene.ends)
     for (const admittance_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
-      if (std::abs(w - around.imag()) < reach) value *= (s * s + s * (w / m.q) + w * w) * (1 / (w * w));
+      if (std::abs((m.q < 0.5 ? m.pole().imag() : w) - around.imag()) < reach) value *= (s * s + s * (w / m.q) + w * w) * (1 / (w * w));
     }
   return value;
 }
@@ -75,6 +75,13 @@ inline bool stayed(const std::vector<std::complex<double>>& roots, const std::ve
   return true;
 }
 
+/// What an overdamped end relaxes with is real; what loss as a constant Q makes of it is not.
+inline std::vector<std::complex<double>> with_real_poles(std::vector<std::complex<double>> poles) {
+  for (auto& s : poles)
+    if (std::abs(s.imag()) < 0.1 * std::abs(s.real())) s = s.real();
+  return poles;
+}
+
 /// The n-th partial of a string whose ends resist turning, but for what else is in the scene: q L = n pi + the phases that the ends are ahead by.
 inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   if (scene.ends[0].clamping == 0 && scene.ends[1].clamping == 0) return scene.string.partial_Hz(n);
@@ -96,7 +103,7 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   const double spacing = 2 * std::numbers::pi * scene.string.fundamental_Hz;
   if (!near.empty()) {
     std::vector<std::complex<double>> roots = near;
-    if (detail::settle(scene, roots, 1.0, spacing, 8) && detail::stayed(roots, near, spacing)) return roots;
+    if (detail::settle(scene, roots, 1.0, spacing, 8) && detail::stayed(roots, near, spacing)) return detail::with_real_poles(std::move(roots));
   }
   std::vector<std::complex<double>> roots;
   for (int n = 1; n <= most; ++n) {
@@ -107,15 +114,16 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   for (const yielding_end& end : scene.ends)
     for (const admittance_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
-      roots.emplace_back(-w / (2 * m.q), w * std::sqrt(std::max(0.01, 1 - 0.25 / (m.q * m.q))));
+      if (m.q < 0.5) roots.push_back(m.pole() - 2 * scene.string.fundamental_Hz * m.per_mass_per_s * m.q / w);  // the slower one; the string draws the end back as well
+      else roots.emplace_back(-w / (2 * m.q), w * std::sqrt(std::max(0.01, 1 - 0.25 / (m.q * m.q))));
     }
   std::sort(roots.begin(), roots.end(), [](auto a, auto b) { return a.imag() < b.imag(); });
   const std::vector<std::complex<double>> begin = roots;
   std::vector<bool> none(roots.size(), false);
-  if (detail::sweep(scene, roots, none, 1.0, spacing) < 0.01 && detail::settle(scene, roots, 1.0, spacing, 8)) return roots;  // next to where it began
+  if (detail::sweep(scene, roots, none, 1.0, spacing) < 0.01 && detail::settle(scene, roots, 1.0, spacing, 8)) return detail::with_real_poles(std::move(roots));  // next to where it began
   roots = begin;
   for (double strength = 0.125; strength <= 1.0; strength += 0.125) detail::settle(scene, roots, strength, spacing, strength == 1.0 ? 12 : 4);
-  return roots;
+  return detail::with_real_poles(std::move(roots));
 }
 
 /// Free decay of a pluck of 1 N at `position`, from its poles. Residues at the instant of release.
@@ -129,7 +137,10 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
     const std::complex<double> up = detail::mode_zeros(scene, s + h, s, spacing), down = detail::mode_zeros(scene, s - h, s, spacing);  // the loop as such is straight only far from a mode
     const std::complex<double> over = plain::reciprocal((above.determinant * up - below.determinant * down) * s) * (-2.0 * h);
     damped_line line{s, {}};
-    for (std::size_t e = 0; e < 2; ++e) line.residue[e] = over * (above.times_determinant[e] * up + below.times_determinant[e] * down);
+    for (std::size_t e = 0; e < 2; ++e) {
+      line.residue[e] = over * (above.times_determinant[e] * up + below.times_determinant[e] * down);
+      if (s.imag() == 0) line.residue[e] = 0.5 * line.residue[e].real();  // it has no twin
+    }
     lines.push_back(line);
   }
   return lines;

@@ -44,12 +44,21 @@ struct admittance_mode {
     const double w = 2 * std::numbers::pi * frequency_Hz;
     return per_mass_per_s * s * plain::reciprocal(s * s + s * (w / q) + w * w);
   }
+  /// What it yields under a steady force, Z / K: as much as so many seconds of string.
+  [[nodiscard]] double compliance_s() const noexcept { return per_mass_per_s / std::pow(2 * std::numbers::pi * frequency_Hz, 2); }
   /// The pole with the positive imaginary part; of two real ones the slower.
   [[nodiscard]] std::complex<double> pole() const noexcept {
     const double w = 2 * std::numbers::pi * frequency_Hz;
     return w * (-0.5 / q + std::sqrt(std::complex<double>(0.25 / (q * q) - 1)));
   }
 };
+
+/// A damper beside a spring, with a mass that hardly counts: Z Y = conductance s / (s + 2 pi corner) below R / M (1/s).
+/// conductance: Z / R; corner: K / (2 pi R), at most a hundredth of R / M.
+[[nodiscard]] inline admittance_mode overdamped_mode(double conductance, double corner_Hz, double without_mass_1_s = 2e7) noexcept {
+  const double soft_1_s = 2 * std::numbers::pi * corner_Hz;
+  return {std::sqrt(soft_1_s * without_mass_1_s) / (2 * std::numbers::pi), std::sqrt(soft_1_s / without_mass_1_s), conductance * without_mass_1_s};
+}
 
 /// A sum of modes. Passive as long as no mass is negative.
 struct modal_termination {

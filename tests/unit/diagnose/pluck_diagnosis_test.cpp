@@ -45,6 +45,39 @@ TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck
   CHECK(d->mismatch.residual_over_noise > 2);
 }
 
+TEST_CASE("an end that swallows what comes, and one that is heavy and softly held: each is found, and what the wire held comes out right") {
+  const auto& rig = test::plucked_rig;
+  for (const bool heavy : {false, true}) {
+    CAPTURE(heavy);
+    rosin::rig_burden burden;
+    if (heavy) burden.string.supports[1] = {0.05, 60, 20};
+    else burden.string.ends[1].modes = {rosin::overdamped_mode(0.003, 40, 1e6)};
+    std::vector<rosin::pluck_take> takes;
+    for (const double force_N : {1.0, 0.5, 0.75}) takes.push_back(test::recorded(*rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.15}), force_N, takes.size()));
+    const std::vector held{takes.back()};
+    takes.pop_back();
+    const auto d = rosin::diagnose_plucks(takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+      const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, rig.string.impedance_Ns_m(), rig.string.length_m, takes.size()};
+      std::vector<rosin::pluck_effect> all{rosin::air_loss_effect(facts), rosin::crosstalk_effect(facts)};
+      for (const int end : {0, 1}) {
+        all.push_back(rosin::resistive_end_effect(facts, end));
+        all.push_back(rosin::support_resonance_effect(facts, end));
+        std::erase_if(all.back().starts, [](const auto& start) { return !(start[1] == 25 && start[0] < 200); });
+      }
+      return all;
+    });
+    REQUIRE_MESSAGE(d, d.error());
+    REQUIRE(d->best.effects.size() == 1);
+    CHECK(d->best.effects[0].id() == (heavy ? "support-resonance@far" : "resistive-end@far"));
+    CHECK(d->explained);
+    CHECK(d->before > 10 * d->floor);
+    CHECK(d->after < 1.05 * d->floor);
+    const Eigen::VectorXd found = d->best.value.tail(d->best.value.size() - d->data.layout.size()).array().exp();
+    CHECK((heavy ? found[0] / 60 : found[0] * rig.string.impedance_Ns_m() / 0.003) == doctest::Approx(1).epsilon(0.003));
+    CHECK(found[1] == doctest::Approx(heavy ? 20 : 40).epsilon(0.02));
+  }
+}
+
 TEST_CASE("a stiffness that was not declared is found behind a sensor that rings, and then the sensor") {
   const auto layout = test::two_plucks({});
   const rosin::string_facts facts{659.69, 128e3, 60e3, 0.175, 0.314, 2};

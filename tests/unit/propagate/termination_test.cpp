@@ -35,3 +35,14 @@ TEST_CASE("poles are the zeros of the denominator; the memory is that of the slo
     CHECK(rosin::modal_termination{{m}}.memory_s() == doctest::Approx(std::log(1e3) / -p.real()));
   }
 }
+
+TEST_CASE("a damper beside a spring: in phase with the force above its corner, springy below, and slower than it is massive") {
+  const auto mode = rosin::overdamped_mode(0.01, 30);
+  for (const double f : {3.0, 30.0, 300.0, 30e3}) {
+    const std::complex<double> s(0, 2 * std::numbers::pi * f);
+    CHECK(std::abs(mode(s) - 0.01 * s / (s + 2 * std::numbers::pi * 30)) < 0.01 * 0.012);
+  }
+  CHECK(mode.pole().imag() == 0);
+  CHECK(mode.pole().real() == doctest::Approx(-2 * std::numbers::pi * 30).epsilon(1e-4));
+  CHECK(mode.compliance_s() == doctest::Approx(0.01 / (2 * std::numbers::pi * 30)));
+}
