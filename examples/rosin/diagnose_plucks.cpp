@@ -3,6 +3,8 @@
 #include "pluck_input.hpp"
 #include "rig_ends.hpp"
 
+#include <algorithm>
+
 namespace tool {
 
 rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from) {
@@ -37,7 +39,10 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
   plucks_told out{*std::move(found), {}};
   rosin::pluck_guess told = plucks->guess;
   told.ends = out.found.data.layout.ends(out.found.best.value);
-  if (!out.found.explained) out.odd = rosin::find_odd_pluck(plucks->takes, plucks->held, told, plucks->options, catalogue);
+  if (out.found.explained) return out;
+  out.odd = rosin::find_odd_pluck(plucks->takes, plucks->held, told, plucks->options, catalogue);
+  if (!out.odd && impedance > 0 && std::find(known.begin(), known.end(), "rattle") == known.end())
+    out.odd = rosin::find_rattling_plucks(plucks->takes, plucks->held, told, plucks->options, catalogue, impedance);
   return out;
 }
 

@@ -58,7 +58,9 @@ void add_cause(missing_effect m, rig_diagnosis& d) {
 }
 
 std::string contradiction(const rosin::odd_pluck& odd) {
-  const std::string out = odd.take.name + " contradicts the other plucks: ";
+  std::string names = odd.take.name;
+  for (const rosin::pluck_take& take : odd.also) names += ", " + take.name;
+  const std::string out = names + (odd.also.empty() ? " contradicts" : " contradict") + " the other plucks: ";
   if (odd.lost) return out + in_digits(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
   const double others_Hz = odd.others.best.value[rosin::pluck_layout::fundamental], apart = odd.own_fundamental_Hz / others_Hz - 1;
   const std::string strongest = odd.strongest ? "; it is the strongest: something that only large motion meets?" : "";

@@ -34,6 +34,7 @@ struct take_and_model {
 struct odd_pluck {
   pluck_take take;
   pluck_diagnosis others;
+  std::vector<pluck_take> also{};    ///< weaker ones that contradict the others as well
   take_and_model ringing{};          ///< by release and strength of its first periods
   double own_fundamental_Hz = 0;     ///< of this pluck fitted by itself; 0: it cannot be
   bool strongest = false;
@@ -152,6 +153,19 @@ inline std::array<double, 2> first_off(const take_and_model& t, double fundament
   return {begin, begin + static_cast<double>(window) / t.rate_Hz};
 }
 
+/// Against plucks that are explained by themselves; nothing if they foretell it.
+inline std::optional<odd_pluck> against(pluck_diagnosis others, const pluck_take& take, const pluck_guess& guess, const pluck_options& options) {
+  constexpr double clearly_off = 3;
+  odd_pluck odd{.take = take, .others = std::move(others), .strongest = true};
+  const auto seen = predicted(odd.others.data, odd.others.best, take, rms_of(odd.others.best.quality.noise));
+  odd.before = seen[0], odd.floor = seen[1];
+  if (!(odd.before > clearly_off * odd.floor)) return std::nullopt;
+  if (const auto own = fit_declared({take}, guess, options)) odd.own_fundamental_Hz = own->value[pluck_layout::fundamental];
+  odd.ringing = compare_late(odd.others, take);
+  if (odd.ringing.rate_Hz > 0) odd.time_s = first_off(odd.ringing, odd.others.best.value[pluck_layout::fundamental]);
+  return odd;
+}
+
 /// What the declared model leaves of the worst of these takes; 1 where it cannot be fitted to all of their decay.
 inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {
   const auto fit = fit_declared(takes, guess, options);
@@ -181,16 +195,11 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
   if (fitted.empty()) std::swap(fitted, kept);
   auto others = diagnose_plucks(fitted, kept, guess, options, catalogue_for);
   if (!others || !others->explained) return std::nullopt;
-  odd_pluck odd{.take = all[which], .others = *std::move(others), .strongest = true};
-  const auto seen = detail::predicted(odd.others.data, odd.others.best, odd.take, detail::rms_of(odd.others.best.quality.noise));
-  odd.before = seen[0], odd.floor = seen[1];
-  if (!(odd.before > clearly_off * odd.floor)) return std::nullopt;
-  for (const pluck_take& take : all) odd.strongest = odd.strongest && take.strength_N <= odd.take.strength_N;
-  if (const auto own = detail::fit_declared({odd.take}, guess, options)) odd.own_fundamental_Hz = own->value[pluck_layout::fundamental];
-  odd.ringing = detail::compare_late(odd.others, odd.take);
-  if (odd.ringing.rate_Hz > 0) odd.time_s = detail::first_off(odd.ringing, odd.others.best.value[pluck_layout::fundamental]);
-  detail::search_loss(odd);
-  if (!odd.lost) detail::search_place(odd, clearly_off);
+  auto odd = detail::against(*std::move(others), all[which], guess, options);
+  if (!odd) return std::nullopt;
+  for (const pluck_take& take : all) odd->strongest = odd->strongest && take.strength_N <= odd->take.strength_N;
+  detail::search_loss(*odd);
+  if (!odd->lost) detail::search_place(*odd, clearly_off);
   return odd;
 }
 

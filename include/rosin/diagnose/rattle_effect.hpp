@@ -9,12 +9,14 @@
 //
 //     y(s) = [y_0 - F M(p, x) / (s D) + M(x, x) f(s) / D] / s,     y_0 the held string's.
 //
-// Loads and yielding ends are left out of y.
+// Loads and yielding ends are left out of y. Where several plucks meet it, softer ones by themselves foretell each of them.
 //
 #pragma once
 
 #include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/diagnose/odd_pluck.hpp>
+
+#include <algorithm>
 
 namespace rosin {
 
@@ -141,6 +143,43 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
   out.before = std::sqrt(before / recorded), out.after = std::sqrt(after / recorded), out.floor = std::sqrt(noise_power / recorded);
   if (!(out.one_sided > least_one_sided) || !(side * out.gap_m > 0 || std::abs(out.gap_m) < spread) || !(spread < most_spread * y.cwiseAbs().maxCoeff())) return std::nullopt;
   return out;
+}
+
+namespace detail {
+
+/// All plucks that contradict the others met one and the same obstacle.
+[[nodiscard]] inline bool rattles_alike(const odd_pluck& odd, double impedance_Ns_m) {
+  constexpr double most_apart = 0.01, sure = 3;
+  const auto first = find_rattle(odd, impedance_Ns_m);
+  return first && std::all_of(odd.also.begin(), odd.also.end(), [&](const pluck_take& take) {
+    odd_pluck other = odd;
+    other.take = take;
+    const auto again = find_rattle(other, impedance_Ns_m);
+    return again && std::abs(again->place.position - first->place.position) < most_apart && std::abs(again->gap_m - first->gap_m) < sure * std::hypot(again->gap_sd_m, first->gap_sd_m);
+  });
+}
+
+}  // namespace detail
+
+/// The strongest of at least three plucks and the next ones, where they met the same obstacle and the softer ones, diagnosed by themselves, leave
+/// nothing unexplained. For what no single odd one (odd_pluck.hpp) accounts for.
+[[nodiscard]] inline std::optional<odd_pluck> find_rattling_plucks(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
+                                                                   const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
+                                                                   double impedance_Ns_m) {
+  std::vector<pluck_take> all = takes;
+  all.insert(all.end(), held.begin(), held.end());
+  std::stable_sort(all.begin(), all.end(), [](const pluck_take& a, const pluck_take& b) { return a.strength_N > b.strength_N; });
+  for (std::ptrdiff_t strong = 2; strong < static_cast<std::ptrdiff_t>(all.size()); ++strong) {
+    std::vector<pluck_take> soft(all.begin() + strong, all.end()), kept;
+    if (soft.size() > 1) kept.push_back(std::move(soft.back())), soft.pop_back();
+    auto others = diagnose_plucks(soft, kept, guess, options, catalogue_for);
+    if (!others || !others->explained) continue;
+    auto odd = detail::against(*std::move(others), all.front(), guess, options);
+    if (!odd) continue;
+    odd->also.assign(all.begin() + 1, all.begin() + strong);
+    if (detail::rattles_alike(*odd, impedance_Ns_m)) return odd;
+  }
+  return std::nullopt;
 }
 
 }  // namespace rosin

@@ -42,6 +42,29 @@ TEST_CASE("rattle: an obstacle that only the strongest pluck meets is found, wit
   }
 }
 
+TEST_CASE("rattle: one that two of three plucks meet is told by both, against the softest by itself") {
+  const rosin::obstacle stop{0.62, -1.0e-3, 3e5};
+  const auto none = [](const rosin::pluck_fit_result&) { return std::vector<rosin::pluck_effect>{}; };
+  const std::vector<rosin::pluck_take> takes{pluck(0.5, 1, stop), pluck(2, 2, stop)}, held{pluck(1.6, 3, stop)};
+  const double Z = test::plucked_rig.string.impedance_Ns_m();
+  const auto odd = rosin::find_rattling_plucks(takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, none, Z);
+  REQUIRE(odd);
+  CHECK(odd->take.name == "pluck-2");
+  REQUIRE(odd->also.size() == 1);
+  CHECK(odd->also[0].name == "pluck-3");
+  const auto found = rosin::find_rattle(*odd, Z);
+  REQUIRE(found);
+  CHECK(std::abs(found->place.position - stop.position) < 0.002);
+  CHECK(std::abs(found->gap_m / stop.gap_m - 1) < 0.05);
+  const auto clipped = [&](double force_N, std::uint64_t seed) {
+    auto take = pluck(force_N, seed, {});
+    for (auto& channel : take.force_N)
+      for (double& x : channel) x = std::clamp(x, -0.9, 0.9);
+    return take;
+  };
+  CHECK_FALSE(rosin::find_rattling_plucks({takes[0], clipped(2, 2)}, {clipped(1.6, 3)}, {.fundamental_Hz = 660}, {.internal_loss = false}, none, Z));
+}
+
 TEST_CASE("rattle: a pluck that is odd for another reason met no obstacle") {
   const rosin::obstacle none{};
   std::vector<rosin::pluck_take> takes{pluck(0.5, 1, none), pluck(2, 2, none)};
