@@ -5,6 +5,7 @@
 // the table that a hammer and a laser would make of them, and the impulse response of a reflection. Waveforms over twenty periods
 // under the bow; pitch and decay of the partials when the string is left to itself.
 //
+#include "support/apart.hpp"
 #include "support/violin_e_string.hpp"
 
 #include <doctest/doctest.h>
@@ -48,13 +49,6 @@ rosin::modal_termination measured(const rosin::modal_termination& end) {
   REQUIRE_MESSAGE(like, like.error());
   MESSAGE("a table of ", table.size(), " points by ", like->end.modes.size(), " modes; reflection off by ", like->mismatch);
   return like->end;
-}
-
-double delta(const std::vector<double>& a, const std::vector<double>& b) {
-  double mean = 0, difference = 0, power = 0;
-  for (const double x : b) mean += x / static_cast<double>(b.size());
-  for (std::size_t i = 0; i < b.size(); ++i) difference += std::pow(a[i] - b[i], 2), power += std::pow(b[i] - mean, 2);
-  return std::sqrt(difference / power);
 }
 
 /// Strikes for 0.2 ms, then lets go.
@@ -109,11 +103,11 @@ TEST_CASE("bowed on a violin's bridge, as modes and as a table: the first twenty
   const double twenty_periods_s = 20 / rig.string.fundamental_Hz;
   const auto modes = by_modes({bridge, {}}, law, rod, twenty_periods_s), rigid = by_modes({}, law, rod, twenty_periods_s);
   CHECK(modes.slips > 5);
-  MESSAGE("on rigid ends: Delta of force ", delta(rigid.contact_force_N, modes.contact_force_N), ", of velocity ", delta(rigid.centre_velocity_m_s, modes.centre_velocity_m_s));
+  MESSAGE("on rigid ends: Delta of force ", test::delta(rigid.contact_force_N, modes.contact_force_N), ", of velocity ", test::delta(rigid.centre_velocity_m_s, modes.centre_velocity_m_s));
   const auto table = measured(bridge);
   for (const auto* end : {&bridge, &table}) {
     const auto waves = by_waves({*end, {}}, law, rod, twenty_periods_s);
-    const double force = delta(waves.contact_force_N, modes.contact_force_N), velocity = delta(waves.centre_velocity_m_s, modes.centre_velocity_m_s);
+    const double force = test::delta(waves.contact_force_N, modes.contact_force_N), velocity = test::delta(waves.centre_velocity_m_s, modes.centre_velocity_m_s);
     MESSAGE((end == &table ? "table" : "modes"), ": Delta of force ", force, ", of velocity ", velocity, ", ", waves.slips, " slips, ", modes.slips, " by modes");
     CHECK(waves.slips == modes.slips);
     CHECK(force < 0.02);
@@ -127,7 +121,7 @@ TEST_CASE("left to itself: pitch and decay of the partials") {
   const auto table = measured(bridge);
   for (const auto* end : {&bridge, &table}) {
     const auto waves = by_waves({*end, {}}, strike{}, rosin::steady_rod{}, 0.07);
-    CHECK(delta(waves.force_near_N, wanted.force_near_N) < 0.02);
+    CHECK(test::delta(waves.force_near_N, wanted.force_near_N) < 0.02);
     double worst_cents = 0, worst_decay = 0, moved_cents = 0, moved_decay = 0;
     for (int n = 1; n <= 12; ++n) {
       const double f = n * rig.string.fundamental_Hz, rate = settings.sample_rate_Hz;
@@ -153,7 +147,7 @@ TEST_CASE("an end that reflects by an impulse response: the waves do what its mo
   const auto like = rosin::as_modes(*end, {.to_Hz = 30e3, .tolerance = 3e-3, .refuse = 0.02});
   REQUIRE_MESSAGE(like, like.error());
   const auto modes = by_modes({like->end, {}}, strike{}, rosin::steady_rod{}, 0.03), waves = by_waves({like->end, {}}, strike{}, rosin::steady_rod{}, 0.03);
-  MESSAGE(like->end.modes.size(), " modes, reflection off by ", like->mismatch, "; Delta of the far force ", delta(waves.force_far_N, modes.force_far_N));
-  CHECK(delta(waves.force_far_N, modes.force_far_N) < 0.02);
-  CHECK(delta(waves.force_near_N, modes.force_near_N) < 0.02);
+  MESSAGE(like->end.modes.size(), " modes, reflection off by ", like->mismatch, "; Delta of the far force ", test::delta(waves.force_far_N, modes.force_far_N));
+  CHECK(test::delta(waves.force_far_N, modes.force_far_N) < 0.02);
+  CHECK(test::delta(waves.force_near_N, modes.force_near_N) < 0.02);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The travelling-wave string against its modes, with friction in the loop: the first twenty periods of strokes that are not
 // chaotic (in others two simulations of any kind part after some slips, the modal one from itself at another rate).
+#include "support/apart.hpp"
 #include "support/violin_e_string.hpp"
 
 #include <doctest/doctest.h>
@@ -17,17 +18,6 @@ namespace {
 const rosin::modal_rig& rig = test::violin_e_string;
 constexpr double twenty_periods_s = 20 / 660.0;
 
-/// Of Eq. (12): rms of the difference over rms of the signal without its mean.
-double delta(const std::vector<double>& a, const std::vector<double>& b) {
-  double mean = 0, difference = 0, power = 0;
-  for (const double x : b) mean += x / static_cast<double>(b.size());
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    difference += (a[i] - b[i]) * (a[i] - b[i]);
-    power += (b[i] - mean) * (b[i] - mean);
-  }
-  return std::sqrt(difference / power);
-}
-
 rosin::profiled_rod ramp(double rise_s, double normal_N) { return {{}, {{0, 0}, {rise_s, 0.2}}, {{0, normal_N}}}; }
 
 template <class Law>
@@ -40,12 +30,12 @@ void compare(const Law& law, const rosin::profiled_rod& rod, double position) {
   CHECK(waves->unconverged == 0);
   CHECK(waves->slips == modes->slips);
   CHECK(waves->slips > 0);
-  const double force = delta(waves->contact_force_N, modes->contact_force_N), velocity = delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s);
+  const double force = test::delta(waves->contact_force_N, modes->contact_force_N), velocity = test::delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s);
   MESSAGE("position ", position, ": Delta of force ", force, ", of velocity ", velocity, ", ", waves->slips, " slips");
   CHECK(force <= 0.01);
   CHECK(velocity <= 0.01);
-  CHECK(delta(waves->force_near_N, modes->force_near_N) <= 0.01);
-  CHECK(delta(waves->force_far_N, modes->force_far_N) <= 0.01);
+  CHECK(test::delta(waves->force_near_N, modes->force_near_N) <= 0.01);
+  CHECK(test::delta(waves->force_far_N, modes->force_far_N) <= 0.01);
 }
 
 rosin::thermal_plastic<> thermal(double normal_N) {
@@ -84,7 +74,7 @@ TEST_CASE("strokes drawn at random, thermal friction: most within 0.01, all near
     const auto waves = rosin::simulate_wave_stroke(r.rig, law, rod, {r.position, duration_s}, settings);
     REQUIRE((modes && twice && waves));
     CHECK(waves->unconverged == 0);
-    const double force = delta(waves->contact_force_N, modes->contact_force_N), own = delta(twice->contact_force_N, modes->contact_force_N);
+    const double force = test::delta(waves->contact_force_N, modes->contact_force_N), own = test::delta(twice->contact_force_N, modes->contact_force_N);
     CHECK(force < own);
     ++strokes;
     within += force <= 0.01;
@@ -100,7 +90,7 @@ TEST_CASE("at twice the rate of the contact a stroke comes closer to what it is 
     return *rosin::simulate_wave_stroke(rig, thermal(1.2), ramp(0.03, 1.2), {0.3, twenty_periods_s}, settings);
   };
   const auto finest = at(64), fine = at(16), coarse = at(8);
-  const double one = delta(coarse.contact_force_N, finest.contact_force_N), half = delta(fine.contact_force_N, finest.contact_force_N);
+  const double one = test::delta(coarse.contact_force_N, finest.contact_force_N), half = test::delta(fine.contact_force_N, finest.contact_force_N);
   MESSAGE("Delta to 4.1 MHz: ", one, " at 512 kHz, ", half, " at 1.02 MHz");
   CHECK(half < 0.75 * one);
 }

@@ -144,8 +144,7 @@ struct held_string {
       if (m.known[e]) yields_s[e] = (m.known[e](1e-2) / 1e-2).real();
     for (std::size_t k = 0; k < modes.size(); ++k) yields_s[m.mode_end[k]] += modes[k].compliance_s();
     length_s = one_way_s + yields_s[0] + yields_s[1];
-    force[0] = ((1 - position) * one_way_s + yields_s[1]) / length_s;
-    force[1] = 1 - force[0];
+    force = static_forces(position, {yields_s[0] / one_way_s, yields_s[1] / one_way_s});
   }
   [[nodiscard]] double by_compliance(std::size_t channel, std::size_t end) const { return (channel == end ? -force[channel] : 1 - force[channel]) / length_s; }
 };

@@ -50,8 +50,12 @@ struct ringing_string {
   }
 };
 
-/// Forces on {near, far} before the release, per newton of F.
-[[nodiscard]] inline std::array<double, 2> static_forces(double position) noexcept { return {1 - position, position}; }
+/// Forces on {near, far} before the release, per newton of F. `longer`: by how much more string either end counts that yields (less where it holds the
+/// string against turning), fractions of the length.
+[[nodiscard]] inline std::array<double, 2> static_forces(double position, const std::array<double, 2>& longer = {}) noexcept {
+  const double far = (position + longer[0]) / (1 + longer[0] + longer[1]);
+  return {1 - far, far};
+}
 
 /// The band's window (band.hpp) at the complex frequency of a pole: what it makes of exp(pole t).
 [[nodiscard]] inline std::complex<double> band_weight(const band& limits, std::complex<double> pole) noexcept {

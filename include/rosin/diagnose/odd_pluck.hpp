@@ -48,6 +48,9 @@ struct odd_pluck {
 
 namespace detail {
 
+/// A pluck is off by so many times the noise, or foretold.
+inline constexpr double clearly_off = 3;
+
 /// By release and strength of the first periods: what comes later is not to bend them.
 inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& take) {
   constexpr double first_periods = 5;
@@ -103,7 +106,7 @@ inline void search_loss(odd_pluck& odd) {
 
 /// Another place from which the model of the others predicts the pluck. What a wrong place leaves of the first periods falls steadily
 /// towards the right one; there, of the whole take, it is a parabola.
-inline void search_place(odd_pluck& odd, double clearly_off) {
+inline void search_place(odd_pluck& odd) {
   constexpr double ends = 0.02, step = 0.06, near = 1e-3, few_periods = 3;
   const auto from = [&](double position) {
     auto take = odd.take;
@@ -155,7 +158,6 @@ inline std::array<double, 2> first_off(const take_and_model& t, double fundament
 
 /// Against plucks that are explained by themselves; nothing if they foretell it.
 inline std::optional<odd_pluck> against(pluck_diagnosis others, const pluck_take& take, const pluck_guess& guess, const pluck_options& options) {
-  constexpr double clearly_off = 3;
   odd_pluck odd{.take = take, .others = std::move(others), .strongest = true};
   const auto seen = predicted(odd.others.data, odd.others.best, take, rms_of(odd.others.best.quality.noise));
   odd.before = seen[0], odd.floor = seen[1];
@@ -177,7 +179,7 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
 /// The odd one of at least three plucks (fitted and held out), if there is one.
 [[nodiscard]] inline std::optional<odd_pluck> find_odd_pluck(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
                                                              const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for) {
-  constexpr double far_better = 0.3, clearly_off = 3;
+  constexpr double far_better = 0.3;
   std::vector<pluck_take> all = takes;
   all.insert(all.end(), held.begin(), held.end());
   if (all.size() < 3) return std::nullopt;
@@ -199,7 +201,7 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
   if (!odd) return std::nullopt;
   for (const pluck_take& take : all) odd->strongest = odd->strongest && take.strength_N <= odd->take.strength_N;
   detail::search_loss(*odd);
-  if (!odd->lost) detail::search_place(*odd, clearly_off);
+  if (!odd->lost) detail::search_place(*odd);
   return odd;
 }
 

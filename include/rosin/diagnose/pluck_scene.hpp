@@ -133,7 +133,7 @@ struct nearest_pinned {
     longer[e] = -shortened_by(scene.string, scene.ends[e].clamping);
     for (const admittance_mode& m : scene.ends[e].modes) longer[e] += m.compliance_s() * 2 * scene.string.fundamental_Hz;
   }
-  return static_forces((position + longer[0]) / (1 + longer[0] + longer[1]));
+  return static_forces(position, longer);
 }
 
 }  // namespace rosin

@@ -4,7 +4,8 @@
 #include <rosin/friction/friction_curves.hpp>
 #include <rosin/friction/velocity_curve.hpp>
 
-#include "../../support/moving_end_rig.hpp"
+#include "support/apart.hpp"
+#include "support/moving_end_rig.hpp"
 
 #include <doctest/doctest.h>
 
@@ -26,12 +27,6 @@ rosin::rig_burden on_these() {
   return out;
 }
 
-double apart(const std::vector<double>& a, const std::vector<double>& b) {
-  double off = 0, all = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) off += std::pow(a[i] - b[i], 2), all += b[i] * b[i];
-  return std::sqrt(off / all);
-}
-
 }  // namespace
 
 TEST_CASE("without a burden plucks and strokes are those of the ideal rig") {
@@ -41,19 +36,19 @@ TEST_CASE("without a burden plucks and strokes are those of the ideal rig") {
   const auto one = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings), other = rosin::simulate_pluck(rig, pluck, settings);
   REQUIRE((one && other));
   CHECK(one->size() == other->size());
-  CHECK(apart(one->force_near_N, other->force_near_N) < 1e-3);
-  CHECK(apart(one->force_far_N, other->force_far_N) < 1e-3);
-  CHECK(apart(one->centre_velocity_m_s, other->centre_velocity_m_s) < 1e-2);
+  CHECK(test::apart(one->force_near_N, other->force_near_N) < 1e-3);
+  CHECK(test::apart(one->force_far_N, other->force_far_N) < 1e-3);
+  CHECK(test::apart(one->centre_velocity_m_s, other->centre_velocity_m_s) < 1e-2);
   const rosin::velocity_curve<rosin::two_exponential_curve<double>> law{};
   const rosin::modal_rig turning{string, {7, 3.5, 15}};
   const auto bowed = rosin::simulate_stroke(turning, rosin::rig_burden{}, law, rosin::steady_rod{}, {.duration_s = 0.02}, settings);
   const auto peer = rosin::simulate_stroke(turning, law, rosin::steady_rod{}, {.duration_s = 0.02}, settings);
   REQUIRE((bowed && peer));
   CHECK(bowed->size() == peer->size());
-  CHECK(apart(bowed->contact_force_N, peer->contact_force_N) < 1e-6);
-  CHECK(apart(bowed->centre_velocity_m_s, peer->centre_velocity_m_s) < 1e-6);
-  CHECK(apart(bowed->torsion_velocity_m_s, peer->torsion_velocity_m_s) < 1e-6);
-  CHECK(apart(bowed->force_near_N, peer->force_near_N) < 1e-4);
+  CHECK(test::apart(bowed->contact_force_N, peer->contact_force_N) < 1e-6);
+  CHECK(test::apart(bowed->centre_velocity_m_s, peer->centre_velocity_m_s) < 1e-6);
+  CHECK(test::apart(bowed->torsion_velocity_m_s, peer->torsion_velocity_m_s) < 1e-6);
+  CHECK(test::apart(bowed->force_near_N, peer->force_near_N) < 1e-4);
 }
 
 TEST_CASE("plucks of a string on a bridge and a nut that move are those of component modes") {
@@ -62,9 +57,9 @@ TEST_CASE("plucks of a string on a bridge and a nut that move are those of compo
   const auto one = rosin::simulate_pluck(rig, on_these(), {.position = 0.3, .force_N = 1, .release_s = 0.004 + half_step, .duration_s = 0.03}, settings);
   REQUIRE(one);
   const auto other = test::pluck_moving_ends(peer, 0.3, 1, 0.004 + half_step, 0.03, same);
-  CHECK(apart(one->force_near_N, other.near_N) < 2e-3);
-  CHECK(apart(one->force_far_N, other.far_N) < 2e-3);
-  CHECK(apart(one->centre_velocity_m_s, other.velocity_m_s) < 1e-3);
+  CHECK(test::apart(one->force_near_N, other.near_N) < 2e-3);
+  CHECK(test::apart(one->force_far_N, other.far_N) < 2e-3);
+  CHECK(test::apart(one->centre_velocity_m_s, other.velocity_m_s) < 1e-3);
 }
 
 TEST_CASE("a bowed string on a body runs free as component modes say") {
@@ -75,13 +70,13 @@ TEST_CASE("a bowed string on a body runs free as component modes say") {
   REQUIRE(one);
   const auto other = test::bow_moving_ends(peer, 0.3, law, rod, 0.03, same);
   CHECK(one->slips > 20);
-  CHECK(apart(one->contact_force_N, other.force_N) < 1e-3);
-  CHECK(apart(one->centre_velocity_m_s, other.velocity_m_s) < 1e-3);
-  CHECK(apart(one->force_near_N, other.near_N) < 3e-3);
-  CHECK(apart(one->force_far_N, other.far_N) < 3e-3);
+  CHECK(test::apart(one->contact_force_N, other.force_N) < 1e-3);
+  CHECK(test::apart(one->centre_velocity_m_s, other.velocity_m_s) < 1e-3);
+  CHECK(test::apart(one->force_near_N, other.near_N) < 3e-3);
+  CHECK(test::apart(one->force_far_N, other.far_N) < 3e-3);
   const auto rigid = rosin::simulate_stroke(rig, law, rod, {.position = 0.3, .duration_s = 0.03}, settings);
   REQUIRE(rigid);
-  CHECK(apart(rigid->contact_force_N, other.force_N) > 0.3);
+  CHECK(test::apart(rigid->contact_force_N, other.force_N) > 0.3);
 }
 
 TEST_CASE("a second plane takes its share of a pluck and none of what the wire holds") {
@@ -96,7 +91,7 @@ TEST_CASE("a second plane takes its share of a pluck and none of what the wire h
   CHECK(both->force_near_N[0] == doctest::Approx(0.7).epsilon(1e-3));
   std::vector<double> sum;
   for (std::size_t n = 0; n < one->size(); ++n) sum.push_back((one->force_near_N[n] + 0.1 * other->force_near_N[n]) / 1.1);
-  CHECK(apart(both->force_near_N, sum) < 1e-9);
+  CHECK(test::apart(both->force_near_N, sum) < 1e-9);
 }
 
 TEST_CASE("planes of one pitch stretch a string as one plane does, since they have one tension") {
@@ -105,14 +100,14 @@ TEST_CASE("planes of one pitch stretch a string as one plane does, since they ha
   const rosin::modal_pluck pluck{.force_N = 1.5, .release_s = 0.004, .duration_s = 0.02};
   const auto single = rosin::simulate_pluck(rig, one, pluck, settings), slack = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
   REQUIRE((single && slack));
-  const double stretched = apart(single->force_near_N, slack->force_near_N);
+  const double stretched = test::apart(single->force_near_N, slack->force_near_N);
   CHECK(stretched > 0.01);
   for (const double coupling : {0.4, -0.2}) {
     two.coupling = coupling;
     const auto both = rosin::simulate_pluck(rig, two, pluck, settings);
     REQUIRE(both);
-    CHECK(apart(both->force_near_N, single->force_near_N) < 0.01 * stretched);  // the planes were stepped one after the other
-    CHECK(apart(both->centre_velocity_m_s, single->centre_velocity_m_s) < 0.01 * apart(single->centre_velocity_m_s, slack->centre_velocity_m_s));
+    CHECK(test::apart(both->force_near_N, single->force_near_N) < 0.01 * stretched);  // the planes were stepped one after the other
+    CHECK(test::apart(both->centre_velocity_m_s, single->centre_velocity_m_s) < 0.01 * test::apart(single->centre_velocity_m_s, slack->centre_velocity_m_s));
   }
 }
 
@@ -124,8 +119,8 @@ TEST_CASE("what a sensor feels of the strain is the same from two planes of one 
   const rosin::modal_pluck pluck{.release_s = 0.004, .duration_s = 0.02};
   const auto single = rosin::simulate_pluck(rig, one, pluck, settings), both = rosin::simulate_pluck(rig, two, pluck, settings), deaf = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
   REQUIRE((single && both && deaf));
-  CHECK(apart(single->force_near_N, deaf->force_near_N) > 1e-3);
-  CHECK(apart(both->force_near_N, single->force_near_N) < 1e-9);
+  CHECK(test::apart(single->force_near_N, deaf->force_near_N) > 1e-3);
+  CHECK(test::apart(both->force_near_N, single->force_near_N) < 1e-9);
 }
 
 TEST_CASE("what cannot be is refused") {

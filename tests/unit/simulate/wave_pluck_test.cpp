@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/simulate/wave_pluck.hpp>
 
+#include "support/apart.hpp"
 #include "support/violin_e_string.hpp"
 
 #include <doctest/doctest.h>
@@ -13,15 +14,6 @@ rosin::modal_rig plain_rig() {
   auto out = test::violin_e_string;
   out.torsion = {};
   return out;
-}
-
-double delta(const std::vector<double>& a, const std::vector<double>& b) {
-  double difference = 0, power = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    difference += (a[i] - b[i]) * (a[i] - b[i]);
-    power += b[i] * b[i];
-  }
-  return std::sqrt(difference / power);
 }
 
 const rosin::wave_settings settings{.pass_Hz = 20e3, .stop_Hz = 30e3};
@@ -37,10 +29,10 @@ TEST_CASE("a pluck by waves is one by modes: let go at once, between two steps, 
     REQUIRE(modes);
     REQUIRE_MESSAGE(waves, waves.error());
     REQUIRE(waves->size() == modes->size());
-    CHECK(delta(waves->force_near_N, modes->force_near_N) < 2e-3);
-    CHECK(delta(waves->force_far_N, modes->force_far_N) < 2e-3);
-    CHECK(delta(waves->contact_force_N, modes->contact_force_N) < 1e-3);
-    CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 3e-3);
+    CHECK(test::apart(waves->force_near_N, modes->force_near_N) < 2e-3);
+    CHECK(test::apart(waves->force_far_N, modes->force_far_N) < 2e-3);
+    CHECK(test::apart(waves->contact_force_N, modes->contact_force_N) < 1e-3);
+    CHECK(test::apart(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 3e-3);
     for (const double v : waves->torsion_velocity_m_s) CHECK(v == 0);
     CHECK(waves->force_near_N.front() == doctest::Approx(0.73 * 0.8).epsilon(1e-6));
   }
@@ -59,8 +51,8 @@ TEST_CASE("on ends that move the wire's force is shared as they give way, and th
   REQUIRE_MESSAGE(waves, waves.error());
   CHECK(waves->force_near_N[100] == doctest::Approx(modes->force_near_N[100]).epsilon(1e-4));
   CHECK(std::abs(waves->force_near_N[100] - 0.7) > 2e-4);
-  CHECK(delta(waves->force_near_N, modes->force_near_N) < 3e-3);
-  CHECK(delta(waves->force_far_N, modes->force_far_N) < 3e-3);
+  CHECK(test::apart(waves->force_near_N, modes->force_near_N) < 3e-3);
+  CHECK(test::apart(waves->force_far_N, modes->force_far_N) < 3e-3);
 }
 
 TEST_CASE("plucks that cannot be are refused with the reason") {

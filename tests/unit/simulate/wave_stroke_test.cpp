@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/simulate/wave_stroke.hpp>
 
+#include "support/apart.hpp"
 #include "support/violin_e_string.hpp"
 
 #include <doctest/doctest.h>
@@ -29,15 +30,6 @@ struct imposed_force {
   void reset() noexcept { *this = {}; }
 };
 
-double delta(const std::vector<double>& a, const std::vector<double>& b) {
-  double difference = 0, power = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    difference += (a[i] - b[i]) * (a[i] - b[i]);
-    power += b[i] * b[i];
-  }
-  return std::sqrt(difference / power);
-}
-
 }  // namespace
 
 TEST_CASE("under a given force the string moves, and pulls at its ends, as its modes do") {
@@ -49,11 +41,11 @@ TEST_CASE("under a given force the string moves, and pulls at its ends, as its m
     REQUIRE(modes);
     REQUIRE_MESSAGE(waves, waves.error());
     REQUIRE(waves->size() == modes->size());
-    CHECK(delta(waves->contact_force_N, modes->contact_force_N) < 1e-6);
-    CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 2e-3);
-    CHECK(delta(waves->torsion_velocity_m_s, modes->torsion_velocity_m_s) < 5e-3);
-    CHECK(delta(waves->force_near_N, modes->force_near_N) < 2e-3);
-    CHECK(delta(waves->force_far_N, modes->force_far_N) < 2e-3);
+    CHECK(test::apart(waves->contact_force_N, modes->contact_force_N) < 1e-6);
+    CHECK(test::apart(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 2e-3);
+    CHECK(test::apart(waves->torsion_velocity_m_s, modes->torsion_velocity_m_s) < 5e-3);
+    CHECK(test::apart(waves->force_near_N, modes->force_near_N) < 2e-3);
+    CHECK(test::apart(waves->force_far_N, modes->force_far_N) < 2e-3);
   }
 }
 
@@ -80,9 +72,9 @@ TEST_CASE("how many steps of the far side are computed together changes nothing,
     together.kernels.far_block = together.kernels.block;
     const auto blocks = rosin::simulate_wave_stroke(*design, rig, imposed_force{}, rosin::steady_rod{}, 0.01, settings);
     const auto steps = rosin::simulate_wave_stroke(together, rig, imposed_force{}, rosin::steady_rod{}, 0.01, settings);
-    CHECK(delta(blocks->centre_velocity_m_s, steps->centre_velocity_m_s) < 1e-10);
-    CHECK(delta(blocks->force_near_N, steps->force_near_N) < 1e-10);
-    CHECK(delta(blocks->force_far_N, steps->force_far_N) < 1e-10);
+    CHECK(test::apart(blocks->centre_velocity_m_s, steps->centre_velocity_m_s) < 1e-10);
+    CHECK(test::apart(blocks->force_near_N, steps->force_near_N) < 1e-10);
+    CHECK(test::apart(blocks->force_far_N, steps->force_far_N) < 1e-10);
   }
 }
 
@@ -101,11 +93,11 @@ TEST_CASE("on ends that move the string does what its modes do on them") {
     REQUIRE_MESSAGE(design, design.error());
     const auto waves = rosin::simulate_wave_stroke(*design, rig, imposed_force{}, rosin::steady_rod{}, 0.012, settings);
     REQUIRE_MESSAGE(waves, waves.error());
-    CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 2e-3);
-    CHECK(delta(waves->force_near_N, modes->force_near_N) < 2e-3);
-    CHECK(delta(waves->force_far_N, modes->force_far_N) < 2e-3);
-    CHECK(delta(rigid->centre_velocity_m_s, modes->centre_velocity_m_s) > 0.03);
-    CHECK(delta(rigid->force_near_N, modes->force_near_N) > 0.02);
+    CHECK(test::apart(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 2e-3);
+    CHECK(test::apart(waves->force_near_N, modes->force_near_N) < 2e-3);
+    CHECK(test::apart(waves->force_far_N, modes->force_far_N) < 2e-3);
+    CHECK(test::apart(rigid->centre_velocity_m_s, modes->centre_velocity_m_s) > 0.03);
+    CHECK(test::apart(rigid->force_near_N, modes->force_near_N) > 0.02);
   }
 }
 
@@ -119,11 +111,11 @@ TEST_CASE("a rod that travels along the string: waves do what the modes do, near
     const auto still = rosin::simulate_wave_stroke(rig, imposed_force{}, rosin::steady_rod{}, {way[0].second, 0.02}, settings);
     REQUIRE((modes && still));
     REQUIRE_MESSAGE(waves, waves.error());
-    CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 2e-3);
-    CHECK(delta(waves->torsion_velocity_m_s, modes->torsion_velocity_m_s) < 6e-3);
-    CHECK(delta(waves->force_near_N, modes->force_near_N) < 2e-3);
-    CHECK(delta(waves->force_far_N, modes->force_far_N) < 2e-3);
-    CHECK(delta(still->centre_velocity_m_s, modes->centre_velocity_m_s) > 0.2);
+    CHECK(test::apart(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 2e-3);
+    CHECK(test::apart(waves->torsion_velocity_m_s, modes->torsion_velocity_m_s) < 6e-3);
+    CHECK(test::apart(waves->force_near_N, modes->force_near_N) < 2e-3);
+    CHECK(test::apart(waves->force_far_N, modes->force_far_N) < 2e-3);
+    CHECK(test::apart(still->centre_velocity_m_s, modes->centre_velocity_m_s) > 0.2);
   }
 }
 
@@ -139,8 +131,8 @@ TEST_CASE("strings without stiffness and with much loss do what their modes do, 
     REQUIRE(modes);
     REQUIRE_MESSAGE(waves, waves.error());
     REQUIRE_MESSAGE(travels, travels.error());
-    CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 5e-3);
-    CHECK(delta(travels->centre_velocity_m_s, modes->centre_velocity_m_s) < 1e-2);
+    CHECK(test::apart(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 5e-3);
+    CHECK(test::apart(travels->centre_velocity_m_s, modes->centre_velocity_m_s) < 1e-2);
   }
 }
 
@@ -153,9 +145,9 @@ TEST_CASE("on ends that move a contact that could travel but stays does what one
   const auto travels = rosin::simulate_wave_stroke(*design, rig, imposed_force{}, rosin::profiled_rod{{}, {}, {}, {{0, 0.12}}}, 0.012, settings);
   const auto stays = rosin::simulate_wave_stroke(rig, imposed_force{}, rosin::steady_rod{}, {0.12, 0.012}, settings, ends);
   REQUIRE((travels && stays));
-  CHECK(delta(travels->centre_velocity_m_s, stays->centre_velocity_m_s) < 2e-3);
-  CHECK(delta(travels->force_near_N, stays->force_near_N) < 2e-3);
-  CHECK(delta(travels->force_far_N, stays->force_far_N) < 2e-3);
+  CHECK(test::apart(travels->centre_velocity_m_s, stays->centre_velocity_m_s) < 2e-3);
+  CHECK(test::apart(travels->force_near_N, stays->force_near_N) < 2e-3);
+  CHECK(test::apart(travels->force_far_N, stays->force_far_N) < 2e-3);
 }
 
 TEST_CASE("bowing while travelling: slips and forces as by the modes, and the balance of energy") {
@@ -169,8 +161,8 @@ TEST_CASE("bowing while travelling: slips and forces as by the modes, and the ba
   CHECK(waves->unconverged == 0);
   CHECK(modes->slips > 2);
   CHECK(waves->slips == modes->slips);
-  CHECK(delta(waves->contact_force_N, modes->contact_force_N) < 0.02);
-  CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 0.04);
+  CHECK(test::apart(waves->contact_force_N, modes->contact_force_N) < 0.02);
+  CHECK(test::apart(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 0.04);
   REQUIRE(waves->energy);
   CHECK(std::abs(waves->energy->error()) < 5e-3);
 }
@@ -206,8 +198,8 @@ TEST_CASE("a bowed string on a body: waves and modes agree until the smallest di
   REQUIRE(waves);
   CHECK(modes->slips > 1);
   CHECK(waves->slips == modes->slips);
-  CHECK(delta(waves->contact_force_N, modes->contact_force_N) < 0.03);
-  CHECK(delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 0.1);
+  CHECK(test::apart(waves->contact_force_N, modes->contact_force_N) < 0.03);
+  CHECK(test::apart(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 0.1);
 }
 
 TEST_CASE("a stroke in single precision follows the one in double") {
@@ -219,7 +211,7 @@ TEST_CASE("a stroke in single precision follows the one in double") {
   REQUIRE(single);
   CHECK(exact->unconverged == 0);
   CHECK(exact->slips > 0);
-  CHECK(delta(single->contact_force_N, exact->contact_force_N) < 1e-2);
+  CHECK(test::apart(single->contact_force_N, exact->contact_force_N) < 1e-2);
 }
 
 TEST_CASE("what makes no sense is refused; a rod off the string does nothing") {
