@@ -34,7 +34,7 @@ rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, doubl
   for (std::size_t i = 0; i < found.ids.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     json one{{"effect", found.ids[i]}, {"surviving", found.surviving[row]}, {"detectable", nullptr}};
-    if (!found.strength[i].empty()) one["detectable"] = {{"parameter", found.strength[i]}, {"value", found.detectable[row]}};
+    if (std::isfinite(found.detectable[row])) one["detectable"] = {{"parameter", found.strength[i]}, {"value", found.detectable[row]}};
     out["effects"].push_back(std::move(one));
     std::vector<double> cosines(found.ids.size());
     for (std::size_t j = 0; j < cosines.size(); ++j) cosines[j] = found.cosine(row, static_cast<Eigen::Index>(j));
@@ -55,7 +55,7 @@ std::string isolability_text(const json& j) {
     out += "  " + e.at("effect").get<std::string>();
     if (e.at("detectable").is_object())
       out += ": seen from " + e.at("detectable").at("parameter").get<std::string>() + " = " + in_digits(e.at("detectable").at("value"), "%.2g") + " on (five standard deviations)";
-    out += ", " + in_digits(100 * e.at("surviving").get<double>(), "%.2g") + " % of it left by the nuisances\n";
+    out += ", " + in_digits(100 * e.at("surviving").get<double>(), "%.0f") + " % of it left by the nuisances\n";
   }
   for (const auto& c : j.at("classes")) {
     if (c.size() < 2) continue;

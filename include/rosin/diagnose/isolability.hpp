@@ -21,7 +21,7 @@ namespace rosin {
 struct isolability {
   std::vector<std::string> ids;            ///< effects, with their place
   std::vector<std::string> strength;       ///< name of the parameter that the effect vanishes with; empty: none does
-  Eigen::VectorXd detectable;              ///< its value at five standard deviations; NaN where there is none
+  Eigen::VectorXd detectable;              ///< its value at five standard deviations; NaN where there is none, or none is enough
   Eigen::VectorXd surviving;               ///< |d'| / |d|
   Eigen::MatrixXd cosine;                  ///< symmetric, 1 on the diagonal
   [[nodiscard]] std::vector<std::vector<std::size_t>> classes(double above = 0.95) const {
@@ -57,6 +57,7 @@ public:
     for (const auto& t : plan.takes) release.push_back(release_s), position.push_back(t.position);
     value_ = layout_.initial(plan.takes, plan.guess, plan.guess.fundamental_Hz, release, position);
     if (plan.options.convention) value_[pluck_layout::convention] = 0;
+    plain_ = of({}, value_);
   }
 
   [[nodiscard]] const pluck_layout& layout() const { return layout_; }
@@ -75,9 +76,18 @@ public:
     }
     return out;
   }
+  /// By how much an effect of these values changes them.
+  [[nodiscard]] Eigen::VectorXd change(const pluck_effect& e, const std::vector<double>& values) const {
+    if (e.undo) return undone(e, values[0]);
+    const Eigen::Index plain = value_.size();
+    Eigen::VectorXd v(plain + static_cast<Eigen::Index>(values.size()));
+    v.head(plain) = value_;
+    for (std::size_t q = 0; q < values.size(); ++q) v[plain + static_cast<Eigen::Index>(q)] = to_fitted(e.parameters[q], values[q]);
+    if (e.rebase) e.rebase(layout_, v);
+    return of({e}, v) - plain_;
+  }
   /// What an effect that works on recordings takes out of them.
   [[nodiscard]] Eigen::VectorXd undone(const pluck_effect& e, double value) const {
-    const Eigen::VectorXd plain = of({}, value_);
     std::vector<pluck_take> takes = plan_.takes;
     Eigen::VectorXd out(rows());
     Eigen::Index at = 0;
@@ -86,7 +96,7 @@ public:
       const auto held = static_forces(takes[t].position);
       for (std::size_t c = 0; c < 2; ++c) {
         takes[t].force_N[c].assign(static_cast<std::size_t>(before), takes[t].strength_N * held[c]);
-        const auto* from = plain.data() + at + static_cast<Eigen::Index>(c) * n;
+        const auto* from = plain_.data() + at + static_cast<Eigen::Index>(c) * n;
         takes[t].force_N[c].insert(takes[t].force_N[c].end(), from, from + n);
       }
       at += 2 * n;
@@ -135,7 +145,7 @@ private:
 
   planned_plucks plan_;
   pluck_layout layout_;
-  Eigen::VectorXd value_;
+  Eigen::VectorXd value_, plain_;
 };
 
 /// At most so many of an effect's starting points, spread over all of them.
@@ -146,40 +156,56 @@ private:
   return out;
 }
 
+/// How small an effect may be to change the recordings by `target` of what it changes at `values`; `change(values)`: by how much, relative to that.
+/// In proportion, or as a power that is found on the way.
+template <class Change>
+[[nodiscard]] double least_seen(const pluck_effect& e, int size, std::vector<double> values, double target, const Change& change) {
+  const auto i = static_cast<std::size_t>(size);
+  if (e.undo || e.strength >= 0) return values[i] * target;
+  double power = 1, now = 1;
+  for (int turn = 0; turn < 8 && now > 0 && std::abs(std::log(now / target)) > 0.01; ++turn) {
+    const double before = values[i], was = now;
+    values[i] = std::clamp(before * std::pow(target / now, 1 / power), e.parameters[i].low, e.parameters[i].high);
+    if (values[i] == before) break;
+    now = change(values);
+    power = std::clamp(std::log(now / was) / std::log(values[i] / before), 0.2, 5.0);
+  }
+  return now < 0.9 * target ? std::numeric_limits<double>::quiet_NaN() : values[i];  // not seen even at its largest
+}
+
 }  // namespace detail
 
-/// Needs at least one take with rate, strength and position, and a pitch.
+/// Needs at least one take with rate, strength and position, and a pitch. Effects that no planned pluck shows (hum, which is there without one) are left out.
 [[nodiscard]] inline isolability isolability_of(const planned_plucks& plan, const std::vector<pluck_effect>& effects) {
   const detail::planned_recordings recordings(plan);
-  const Eigen::VectorXd plain = recordings.of({}, recordings.value());
   const Eigen::MatrixXd basis = recordings.nuisances();
-  const auto count = static_cast<Eigen::Index>(effects.size());
-  isolability out{{}, {}, Eigen::VectorXd::Constant(count, std::numeric_limits<double>::quiet_NaN()), Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Identity(count, count)};
+  const auto beyond_nuisances = [&](const Eigen::VectorXd& d) { return Eigen::VectorXd(d - basis * (basis.transpose() * d)); };
+  isolability out;
+  std::vector<double> detectable, surviving;
   std::vector<Eigen::MatrixXd> seen;  // unit vectors, one column a start
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const pluck_effect& e = effects[static_cast<std::size_t>(i)];
+  for (const pluck_effect& e : effects) {
     const auto starts = e.undo ? std::vector<std::vector<double>>{{e.parameters[0].step}} : detail::spread_starts(e, 12);
-    Eigen::MatrixXd columns(plain.size(), static_cast<Eigen::Index>(starts.size()));
-    double best = 0;
+    Eigen::MatrixXd columns(basis.rows(), static_cast<Eigen::Index>(starts.size()));
+    double most = 0, share = 0;
+    std::size_t best = 0;
     for (std::size_t k = 0; k < starts.size(); ++k) {
-      Eigen::VectorXd v(recordings.value().size() + static_cast<Eigen::Index>(starts[k].size()));
-      v.head(recordings.value().size()) = recordings.value();
-      for (std::size_t q = 0; q < starts[k].size(); ++q) v[recordings.value().size() + static_cast<Eigen::Index>(q)] = to_fitted(e.parameters[q], starts[k][q]);
-      if (e.rebase && !e.undo) e.rebase(recordings.layout(), v);
-      Eigen::VectorXd d = e.undo ? recordings.undone(e, starts[k][0]) : Eigen::VectorXd(recordings.of({e}, v) - plain);
-      const double whole = d.norm();
-      d -= basis * (basis.transpose() * d);
-      const double left = d.norm();
-      columns.col(static_cast<Eigen::Index>(k)) = left > 1e-12 ? Eigen::VectorXd(d / left) : Eigen::VectorXd::Zero(d.size());
-      if (left <= best) continue;
-      best = left;
-      out.surviving[i] = left / whole;
-      if (e.undo || e.strength >= 0) out.detectable[i] = starts[k][e.undo ? 0 : static_cast<std::size_t>(e.strength)] * 5 * plan.noise_N / left;
+      const Eigen::VectorXd whole = recordings.change(e, starts[k]), left = beyond_nuisances(whole);
+      columns.col(static_cast<Eigen::Index>(k)) = left.norm() > 1e-12 ? Eigen::VectorXd(left / left.norm()) : Eigen::VectorXd::Zero(left.size());
+      if (left.norm() > most) most = left.norm(), best = k, share = most / whole.norm();
     }
+    if (!(most > 0)) continue;
+    const int size = e.undo ? 0 : e.strength >= 0 ? e.strength : e.shrinks_with;
+    const auto relative = [&](const std::vector<double>& values) { return beyond_nuisances(recordings.change(e, values)).norm() / most; };
+    detectable.push_back(size < 0 ? std::numeric_limits<double>::quiet_NaN() : detail::least_seen(e, size, starts[best], 5 * plan.noise_N / most, relative));
+    surviving.push_back(share);
     out.ids.push_back(e.id());
-    out.strength.push_back(e.undo ? e.parameters[0].name : e.strength >= 0 ? e.parameters[static_cast<std::size_t>(e.strength)].name : std::string{});
+    out.strength.push_back(size >= 0 ? e.parameters[static_cast<std::size_t>(size)].name : std::string{});
     seen.push_back(std::move(columns));
   }
+  const auto count = static_cast<Eigen::Index>(seen.size());
+  out.detectable = Eigen::Map<Eigen::VectorXd>(detectable.data(), count);
+  out.surviving = Eigen::Map<Eigen::VectorXd>(surviving.data(), count);
+  out.cosine = Eigen::MatrixXd::Identity(count, count);
   for (Eigen::Index i = 0; i < count; ++i)
     for (Eigen::Index j = 0; j < i; ++j)
       out.cosine(i, j) = out.cosine(j, i) = (seen[static_cast<std::size_t>(i)].transpose() * seen[static_cast<std::size_t>(j)]).cwiseAbs().maxCoeff();

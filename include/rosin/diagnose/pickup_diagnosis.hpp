@@ -86,10 +86,9 @@ private:
     std::erase_if(catalogue, [&](const auto& e) { return !ask_.asks_for(e.name); });
     std::vector<std::vector<string_line>> held;
     for (const auto& t : held_tables_) held.push_back(t.lines);
-    const line_table together = held.empty() ? line_table{} : combined(held);
     greedy_limits limits;
     limits.pitch_Hz = ask_.fundamental_Hz;
-    d_.law = search_law(d_.table, declared, catalogue, together.lines.size() < 4 ? nullptr : &together, limits);
+    d_.law = search_law(d_.table, declared, catalogue, held.empty() ? line_table{} : combined(held), limits);
   }
 
   void find_stray_lines() {

@@ -86,9 +86,10 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
 
 }  // namespace detail
 
-/// `held`: partials that are predicted only; null where there are none.
-[[nodiscard]] inline law_search search_law(const line_table& table, const fitted_law& declared, const std::vector<law_effect>& catalogue, const line_table* held,
+/// `held`: partials that are predicted only; those above all of the table are not asked for, and none are where that leaves fewer than four.
+[[nodiscard]] inline law_search search_law(const line_table& table, const fitted_law& declared, const std::vector<law_effect>& catalogue, line_table held = {},
                                            const greedy_limits& limits = {}) {
+  std::erase_if(held.lines, [&](const string_line& l) { return l.number > table.lines.back().number; });
   law_search s{declared, declared, {}, {}, 0};
   const double nothing = detail::worth_of(declared, table.lines.size(), limits);
   for (int round = 0; round < limits.most; ++round) {
@@ -97,7 +98,7 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
     if (round == 0)
       for (const auto& t : tried) s.alone.emplace_back(t.effect->name, std::max(t.evidence - nothing, -1e3));
     const auto good = [&](const detail::tried_effect& t) {
-      const bool foretells = held == nullptr || predicted_log_likelihood(*held, t.fit) > predicted_log_likelihood(*held, s.best);
+      const bool foretells = held.lines.size() < 4 || predicted_log_likelihood(held, t.fit) > predicted_log_likelihood(held, s.best);
       const auto strength = std::find_if(t.fit.parameters.begin(), t.fit.parameters.end(), [&](const auto& p) { return p.member == t.effect->strength; });
       const bool there = t.fit.law.*t.effect->strength > limits.certain * t.fit.sd_of(strength->name);
       return t.evidence - now > std::max(limits.worth, limits.crumb * (now - nothing)) && foretells && there;

@@ -49,7 +49,7 @@ struct pluck_effect {
   bool at_end = false;                     ///< place is an end of the string, not a channel
   std::vector<effect_parameter> parameters;
   std::vector<std::vector<double>> starts; ///< physical values
-  int strength = 0;                        ///< index of the parameter that the effect vanishes with; -1: none does
+  int strength = 0;                        ///< index of the parameter that the effect vanishes with, in proportion; -1: none does
   std::function<void(pluck_scene&, const double* values, int take)> apply;
   /// What is not linear works on the recordings: takes out of them what the effect (one parameter, not 0) has put in, by the
   /// fit so far and the scene that it makes.
@@ -63,6 +63,7 @@ struct pluck_effect {
   double horizon_periods = 1e9;  ///< the model of the effect holds for so long
   std::string variant{};         ///< one of several models of the same effect
   std::string beside{};          ///< id of an effect without which this one is the same as another
+  int shrinks_with = -1;         ///< index of a parameter that makes less and less of the effect, though not in proportion; -1: none does
 
   [[nodiscard]] std::string id() const {
     static constexpr const char* places[] = {"near", "far"};

@@ -107,6 +107,7 @@ inline pluck_effect resistive_end_effect(const string_facts& f, int end) {
                  }};
   for (const double relative : detail::geometric(3e-6, 0.05, 5))
     for (const double slow : {0.01, 0.1}) e.starts.push_back({relative / Z, slow * f.fundamental_Hz, 0});
+  e.shrinks_with = 0;
   return e;
 }
 
@@ -146,6 +147,7 @@ inline pluck_effect clamped_end_effect(const string_facts&, int end) {
 inline pluck_effect ac_coupling_effect(const string_facts&) {
   pluck_effect e{"ac-coupling", -1, false, {{"cutoff_Hz", 0.005, 200, 1e-5, true}}, {{0.1}, {0.5}, {2}, {8}, {25}, {70}}, -1,
                  [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
+  e.shrinks_with = 0;
   e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
     for (std::size_t t = 0; t < layout.takes(); ++t)
       for (std::size_t c = 0; c < 2; ++c)
@@ -184,6 +186,7 @@ inline pluck_effect crosstalk_effect(const string_facts&) {
 inline pluck_effect slow_release_effect(const string_facts&) {
   pluck_effect e{"slow-release", -1, false, {{"duration_s", 2e-7, 1e-3, 1e-5, true}}, {{3e-6}, {1e-5}, {1.8e-5}, {3e-5}, {6e-5}, {1.2e-4}}, -1,
                  [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
+  e.shrinks_with = 0;
   e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
     for (std::size_t t = 0; t < layout.takes(); ++t) v[layout.at(t, pluck_layout::release)] -= std::exp(v[v.size() - 1]) / 2;
   };
@@ -193,8 +196,10 @@ inline pluck_effect slow_release_effect(const string_facts&) {
 /// The wire grips the string over a width.
 inline pluck_effect pluck_width_effect(const string_facts& f) {
   const double L = f.length_m > 0 ? f.length_m : 1.0;
-  return {"finite-pluck-width", -1, false, {{"width_m", 1e-5 * L, 0.1 * L, 1e-5, true}}, {{3e-3 * L}, {1e-2 * L}, {3e-2 * L}}, -1,
-          [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
+  pluck_effect e{"finite-pluck-width", -1, false, {{"width_m", 1e-5 * L, 0.1 * L, 1e-5, true}}, {{3e-3 * L}, {1e-2 * L}, {3e-2 * L}}, -1,
+                 [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
+  e.shrinks_with = 0;
+  return e;
 }
 
 /// All of them, in the order of the format. `physics`: names that the declared model already contains.

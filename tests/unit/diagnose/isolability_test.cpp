@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/diagnose/isolability.hpp>
 
+#include <rosin/diagnose/hum_effect.hpp>
+
 #include <doctest/doctest.h>
 
 namespace {
@@ -34,4 +36,23 @@ TEST_CASE("what a pluck can tell apart is what another Fisher analysis says, and
   CHECK(long_look.surviving[3] > 0.45);
   const auto short_look = rosin::isolability_of(plan(0.0031), effects);
   CHECK(short_look.detectable[3] / long_look.detectable[3] > 2);  // 6e-4 after two periods
+}
+
+TEST_CASE("what shrinks with a parameter, though not in proportion, is followed down to where it is seen no more") {
+  const rosin::string_facts facts{660, 128000, 54e3, 0.175, 0.314, 1};
+  const rosin::pluck_effect damped = rosin::resistive_end_effect(facts, 0);
+  rosin::pluck_effect in_proportion = damped;
+  in_proportion.strength = 0, in_proportion.parameters[0].logarithmic = false, in_proportion.starts = {{1e-5 / 0.175, 66, 0}};
+  const auto seen = rosin::isolability_of(plan(0.032), {damped, in_proportion, rosin::slow_release_effect(facts), rosin::ac_coupling_effect(facts)});
+  CHECK(seen.strength[0] == "conductance_m_sN");
+  CHECK(seen.detectable[0] == doctest::Approx(seen.detectable[1]).epsilon(0.1));
+  auto noisy = plan(0.032);
+  noisy.noise_N *= 4;
+  const auto hardly = rosin::isolability_of(noisy, {damped, in_proportion, rosin::slow_release_effect(facts), rosin::ac_coupling_effect(facts)});
+  CHECK(hardly.detectable[0] / seen.detectable[0] == doctest::Approx(4).epsilon(0.1));
+  CHECK(hardly.detectable[2] / seen.detectable[2] < 3);  // what a wire that lets go slowly makes goes as a power of its time
+  CHECK(hardly.detectable[3] > seen.detectable[3]);
+  CHECK(rosin::isolability_of(noisy, {rosin::hum_effect(facts, 50)}).ids.empty());  // is there without a pluck
+  noisy.noise_N = 1e3;
+  CHECK(std::isnan(rosin::isolability_of(noisy, {rosin::slow_release_effect(facts)}).detectable[0]));
 }
