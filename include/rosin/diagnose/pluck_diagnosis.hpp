@@ -7,7 +7,8 @@
 //     significance   the gain in ln L, divided by the misfit that is left (model error counts as noise), is at least 14;
 //     prediction     it gains 3 on takes that were set aside, where it does not gain very much in all;
 //     worth          a further effect (any, where terminations are declared to move: these count as found) takes away at least two thirds of what the model so far leaves beyond the noise, and that is
-//                    at least a hundredth (in amplitude) of what there was to explain: no model of a bead is exact either.
+//                    at least a hundredth (in amplitude) of what there was to explain: no model of a bead is exact either. Of less than that it
+//                    takes away nearly all, and gains 40.
 //
 // Explained is what leaves on such takes no more than a quarter of the noise beyond it, or 12 % of what there was
 // and six times the noise. A mismatch needs no name: it
@@ -112,8 +113,9 @@ private:
   /// them. What a declared end is off by is no other mode of it.
   [[nodiscard]] bool is_worth(const comparison& c, const pluck_effect& e, int round) const {
     if (round == 0 && !d_.data.layout.has_ends()) return true;
+    constexpr double beyond_doubt = 40;
     const bool much = c.was > 1e-4 * all_there_was_, at_known_end = e.at_end && e.place >= 0 && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
-    return c.left < c.was / 3 && (much || (!at_known_end && c.left < c.was / 30));
+    return c.left < c.was / 3 && (much || (!at_known_end && c.left < c.was / 30 && c.gain > beyond_doubt));
   }
 
   [[nodiscard]] std::vector<scene_fit> candidates(int round) const {
