@@ -40,7 +40,7 @@ std::string value_of(const missing_effect& m, const std::string& name, double fa
 
 std::array<double, 2> interval_of(const diagnosed_value& v) {
   static const std::set<std::string> shares{"position", "clamping"};
-  static const std::set<std::string> positive{"mass_kg", "resistance_Ns_m", "frequency_Hz", "q", "cutoff_Hz", "duration_s", "width_m", "axial_stiffness_N",
+  static const std::set<std::string> positive{"mass_kg", "resistance_Ns_m", "frequency_Hz", "q", "cutoff_Hz", "corner_Hz", "duration_s", "width_m", "axial_stiffness_N",
                                               "bending_stiffness_Nm2", "bristle_stiffness_N_m", "speed_ratio", "impedance_ratio"};
   constexpr double all = std::numeric_limits<double>::infinity();
   const bool share = shares.contains(v.name);

@@ -93,7 +93,7 @@ public:
     Eigen::Index at = 0;
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const auto before = static_cast<Eigen::Index>(std::lround(release_s * takes[t].rate_Hz)), n = samples(t);
-      const auto held = static_forces(takes[t].position);
+      const auto held = held_forces(scene_plucks(layout_, plan_.guess.ac_coupled_Hz, {}).scene(value_, static_cast<int>(t)), takes[t].position);
       for (std::size_t c = 0; c < 2; ++c) {
         takes[t].force_N[c].assign(static_cast<std::size_t>(before), takes[t].strength_N * held[c]);
         const auto* from = plain_.data() + at + static_cast<Eigen::Index>(c) * n;
@@ -157,11 +157,11 @@ private:
 }
 
 /// How small an effect may be to change the recordings by `target` of what it changes at `values`; `change(values)`: by how much, relative to that.
-/// In proportion, or as a power that is found on the way.
+/// What works on recordings does so in proportion, all else as a power that is found on the way.
 template <class Change>
 [[nodiscard]] double least_seen(const pluck_effect& e, int size, std::vector<double> values, double target, const Change& change) {
   const auto i = static_cast<std::size_t>(size);
-  if (e.undo || e.strength >= 0) return values[i] * target;
+  if (e.undo) return values[i] * target;
   double power = 1, now = 1;
   for (int turn = 0; turn < 8 && now > 0 && std::abs(std::log(now / target)) > 0.01; ++turn) {
     const double before = values[i], was = now;

@@ -49,7 +49,7 @@ struct pluck_effect {
   bool at_end = false;                     ///< place is an end of the string, not a channel
   std::vector<effect_parameter> parameters;
   std::vector<std::vector<double>> starts; ///< physical values
-  int strength = 0;                        ///< index of the parameter that the effect vanishes with, in proportion; -1: none does
+  int strength = 0;                        ///< index of the parameter that the effect vanishes with, small ones in proportion; -1: none does
   std::function<void(pluck_scene&, const double* values, int take)> apply;
   /// What is not linear works on the recordings: takes out of them what the effect (one parameter, not 0) has put in, by the
   /// fit so far and the scene that it makes.

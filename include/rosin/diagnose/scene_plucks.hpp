@@ -119,9 +119,11 @@ public:
     const pluck_scene s = scene(v, static_cast<int>(take));
     const double position_now = v[position(take)], released = release_s(v, take), newtons = std::exp(v[at(take, strength)]);
     std::vector<damped_line> out;
+    std::array<double, 2> remembered{};  // of the lines, by a high-pass: r s / (s + w) of a line r / (s - p) leaves Re(r w / (p + w)) exp(-w t)
     if (part == 1) {
       out = s.plain_string() ? scene_lines(s, position_now, limits, most, {}) : recorded_lines(strings_->lines(key(v, s), s, position_now, limits, most), s, position_now, limits);
       for (damped_line& line : out) {
+        for (std::size_t c = 0; c < 2; ++c) remembered[c] += 2 * std::numbers::pi * s.sensors[c].corner_Hz * (line.residue[c] * plain::reciprocal(line.pole)).real();
         const std::complex<double> turned = newtons * std::exp(line.pole * (begin_s - released));
         for (auto& r : line.residue) r *= turned;
       }
@@ -130,7 +132,7 @@ public:
       for (std::size_t c = 0; c < 2; ++c) line.residue[c] *= gain(v, c);
     const auto still = held_forces(s, position_now);
     for (std::size_t c = 0; c < 2; ++c) {
-      const double held = newtons * gain(v, c) * (still[c] + s.crosstalk * still[1 - c]);
+      const double held = newtons * gain(v, c) * (still[c] + s.crosstalk * still[1 - c] - remembered[c]);
       out.push_back(slow_line(v, take, part, begin_s, c, s.sensors[c].corner_Hz, held));
     }
     for (const hum_phasor& h : s.hum) {

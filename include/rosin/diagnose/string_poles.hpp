@@ -44,11 +44,12 @@ inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>&
     const std::complex<double> above = characteristic(scene, s + h, strength), below = characteristic(scene, s - h, strength);
     const std::complex<double> newton = (above + below) * h * plain::reciprocal(above - below);  // value over slope
     std::complex<double> repulsion = 0;
+    double nearest = spacing * spacing;
     for (std::size_t j = i > neighbours ? i - neighbours : 0; j < std::min(roots.size(), i + neighbours + 1); ++j)
-      if (j != i && std::norm(roots[i] - roots[j]) > 1e-18 * spacing * spacing) repulsion += plain::reciprocal(roots[i] - roots[j]);
+      if (const double apart = std::norm(roots[i] - roots[j]); j != i && apart > 1e-18 * spacing * spacing) repulsion += plain::reciprocal(roots[i] - roots[j]), nearest = std::min(nearest, apart);
     // The roots that are not sought stand in a regular comb; only what a neighbour adds beyond it must repel.
     std::complex<double> step = newton * plain::reciprocal(1.0 - newton * repulsion);
-    if (plain::abs(newton) < 0.02 * spacing || !std::isfinite(std::norm(step))) step = newton;
+    if (std::norm(newton) < std::min(4e-4 * spacing * spacing, 0.1 * nearest) || !std::isfinite(std::norm(step))) step = newton;
     const double length = plain::abs(step) / spacing;
     roots[i] -= length > 0.3 ? step * (0.3 / length) : step;
     settled[i] = length < 1e-5;  // the next correction would be of the order of its square
@@ -118,6 +119,8 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
       else roots.emplace_back(-w / (2 * m.q), w * std::sqrt(std::max(0.01, 1 - 0.25 / (m.q * m.q))));
     }
   std::sort(roots.begin(), roots.end(), [](auto a, auto b) { return a.imag() < b.imag(); });
+  for (std::size_t i = 1; i < roots.size(); ++i)  // ends that are alike: where two begin at one place they would go on as one
+    if (std::norm(roots[i] - roots[i - 1]) < 1e-6 * spacing * spacing) roots[i] += roots[i].imag() == 0 ? std::complex<double>(-2e-3 * spacing) : std::complex<double>(0, 2e-3 * spacing);
   const std::vector<std::complex<double>> begin = roots;
   std::vector<bool> none(roots.size(), false);
   if (detail::sweep(scene, roots, none, 1.0, spacing) < 0.01 && detail::settle(scene, roots, 1.0, spacing, 8)) return detail::with_real_poles(std::move(roots));  // next to where it began

@@ -126,7 +126,7 @@ struct torsion_state {
 /// The likeliest starting points, best first.
 [[nodiscard]] inline std::vector<torsion_values> torsion_starts(const stick_record& whole, std::size_t wanted) {
   stick_record record(first_part(whole, 12000));
-  const std::size_t begin = record.begin(), end = record.end();
+  const std::size_t begin = static_cast<std::size_t>(std::lround(record.take().start_s * record.take().rate_Hz)), end = record.end();
   const auto& slope = record.compliance()[0];
   std::vector<std::pair<double, torsion_values>> found;
   for (const double q : {13.0, 35.0})

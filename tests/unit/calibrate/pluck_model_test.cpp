@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/calibrate/pluck_model.hpp>
-#include <rosin/propagate/dispersion.hpp>
+#include <rosin/propagate/complex_dispersion.hpp>
 
 #include <doctest/doctest.h>
 
@@ -19,7 +19,7 @@ const rosin::band limits{30e3, 60e3};
 /// evanescent wave (from y'' = 0 at both ends and F = T y' - B y''').
 complex end_force(complex s, double from_other_end) {
   const double epsilon = string.stiffness_s2(), L = 0.5 / string.fundamental_Hz;
-  const complex w = s / complex(0, 1), q = rosin::phase_rate(w, complex(epsilon)), K = epsilon * q * q;
+  const complex w = s / complex(0, 1), q = rosin::phase_rate(w, epsilon), K = epsilon * q * q;
   const complex kappa = std::sqrt(q * q + 1 / epsilon), d = from_other_end * L;
   return ((1.0 + K) * std::sin(q * d) / std::sin(q * L) + K * std::exp(kappa * (d - L))) / (1.0 + 2.0 * K);
 }

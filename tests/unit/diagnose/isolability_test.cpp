@@ -2,6 +2,7 @@
 #include <rosin/diagnose/isolability.hpp>
 
 #include <rosin/diagnose/hum_effect.hpp>
+#include <rosin/diagnose/sympathetic_effect.hpp>
 
 #include <doctest/doctest.h>
 
@@ -55,4 +56,24 @@ TEST_CASE("what shrinks with a parameter, though not in proportion, is followed 
   CHECK(rosin::isolability_of(noisy, {rosin::hum_effect(facts, 50)}).ids.empty());  // is there without a pluck
   noisy.noise_N = 1e3;
   CHECK(std::isnan(rosin::isolability_of(noisy, {rosin::slow_release_effect(facts)}).detectable[0]));
+}
+
+TEST_CASE("at its threshold every effect changes the recordings by five standard deviations") {
+  const rosin::string_facts facts{660, 128000, 54e3, 0.175, 0.314, 1};
+  const auto pluck = plan(0.032);
+  const rosin::detail::planned_recordings recordings(pluck);
+  const Eigen::MatrixXd nuisances = recordings.nuisances();
+  for (auto e : {rosin::clamped_end_effect(facts, 0), rosin::internal_loss_effect(facts), rosin::support_resonance_effect(facts, 0), rosin::sympathetic_string_effect(facts, 1), rosin::ac_coupling_effect(facts)}) {
+    CAPTURE(e.id());
+    e.starts = rosin::detail::spread_starts(e, 12);
+    const double threshold = rosin::isolability_of(pluck, {e}).detectable[0];
+    double nearest = 1e300;  // of all places: which of them is told least of need not be known
+    for (auto values : e.starts) {
+      values[static_cast<std::size_t>(std::max(e.strength, e.shrinks_with))] = threshold;
+      const Eigen::VectorXd d = recordings.change(e, values);
+      const double times = (d - nuisances * (nuisances.transpose() * d)).norm() / (5 * pluck.noise_N);
+      if (std::abs(std::log(times)) < std::abs(std::log(nearest))) nearest = times;
+    }
+    CHECK(nearest == doctest::Approx(1).epsilon(0.03));
+  }
 }

@@ -62,3 +62,32 @@ TEST_CASE("declared ends are in the scene, off by as much as the parameters say,
   CHECK_FALSE(rosin::scene_plucks(layout, {0, 0}, {}, rosin::freedom::no_corrections).is_free(first));
   CHECK_FALSE(rosin::scene_plucks(layout, {0, 0}, {}, rosin::freedom::release_only).is_free(first + 1));  // where a strength would stand
 }
+
+TEST_CASE("behind a high-pass what was held is gone until the first wave comes, whatever the ends do") {
+  const rosin::string_facts facts{.fundamental_Hz = 660, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const auto layout = test::two_plucks({});
+  const double Z = facts.impedance_Ns_m, way_s = 0.3 / (2 * 660);
+  for (const auto& which : {std::array{2.0, 0.0, 0.0}, std::array{60.0, 0.0, 0.0}, std::array{8.0, 0.003, 40.0}, std::array{0.5, 0.01, 5.0}, std::array{7.0, 0.01, 5.0}}) {
+    const double cutoff = which[0], conductance = which[1], corner = which[2];
+    CAPTURE(cutoff);
+    CAPTURE(conductance);
+    std::vector<rosin::pluck_effect> effects;
+    std::vector<double> more;
+    if (conductance > 0) effects.push_back(rosin::resistive_end_effect(facts, 1)), more = {std::log(conductance / Z), std::log(corner), 0.0};
+    const rosin::scene_plucks direct(layout, {0, 0}, effects), coupled(layout, {cutoff, cutoff}, effects);
+    Eigen::VectorXd v = test::values_of(layout, more);
+    v[rosin::pluck_layout::inverse_quality] = 1e-5, v[rosin::pluck_layout::inharmonicity] = 1e-9;  // no wave comes early
+    for (int c = 0; c < 2; ++c) v[layout.at(0, rosin::pluck_layout::offset_near + c)] = 0;
+    const double released = layout.release_s(v, 0), newtons = std::exp(v[layout.at(0, rosin::pluck_layout::strength)]);
+    const auto held = rosin::held_forces(direct.scene(v, 0), v[layout.position(0)]);
+    for (std::size_t c = 0; c < 2; ++c)
+      for (const double t : {0.3 * way_s, 0.6 * way_s}) {
+        const auto at = [&](const rosin::scene_plucks& model) {
+          double sum = 0;
+          for (const auto& line : model.lines(v, 0, 1, released, {40e3, 50e3}, 200)) sum += (line.residue[c] * std::exp(line.pole * t)).real();
+          return sum;
+        };
+        CHECK(std::abs(at(coupled) - (at(direct) - newtons * held[c])) < 2e-4 * newtons);
+      }
+  }
+}

@@ -149,7 +149,10 @@ TEST_CASE("no partial of a clamped string is lost, whatever else is there, to wh
     CHECK(poles.size() == alone.size() + (what >= 2 ? 1 : 0));
     const double spacing = alone.back().imag() - alone[alone.size() - 2].imag();
     CHECK(poles.back().imag() > top - 1.6 * spacing);
-    for (std::size_t i = 1; i < poles.size(); ++i) CHECK(poles[i].imag() - poles[i - 1].imag() < 1.5 * spacing);
+    for (std::size_t i = 1; i < poles.size(); ++i) {
+      CHECK(poles[i].imag() - poles[i - 1].imag() < 1.5 * spacing);
+      CHECK(std::abs(poles[i] - poles[i - 1]) > 1e-4 * spacing);
+    }
   }
 }
 
@@ -172,4 +175,29 @@ TEST_CASE("an end that is damped and hardly held: what relaxes is one of the lin
   const auto held = rosin::held_forces(s, 0.3);
   CHECK(held[1] == doctest::Approx(0.3 / (1 + longer)));
   for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-3));
+}
+
+TEST_CASE("ends that are alike have poles of their own: all lines together are what the wire held") {
+  const auto damped = [](double conductance, double corner_Hz) { return rosin::overdamped_mode(conductance, corner_Hz); };
+  const auto ringing = [](double frequency_Hz, double per_mass) { return rosin::admittance_mode{.frequency_Hz = frequency_Hz, .q = 30, .per_mass_per_s = per_mass}; };
+  const std::vector<std::array<rosin::admittance_mode, 2>> both{{damped(0.01, 20), damped(0.01, 20.2)}, {damped(0.001, 20), damped(0.001, 20)}, {ringing(900, 5), ringing(900, 5)},
+                                                               {ringing(60, 50), ringing(60, 50)}, {ringing(1980, 8), ringing(1980, 8)}};
+  for (const auto& modes : both) {
+    CAPTURE(modes[0].frequency_Hz);
+    rosin::pluck_scene s;
+    s.string = {660, 1e-6, {1e7, 0, 0}, 0};
+    for (std::size_t e = 0; e < 2; ++e) s.ends[e].modes = {modes[e]};
+    const auto poles = rosin::string_poles(s, 300e3, 600);
+    double nearest = 1e300;
+    for (std::size_t i = 0; i < poles.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, std::abs(poles[i] - poles[j]));
+    CHECK(nearest > 0.01);
+    std::array<double, 2> sum{};
+    for (const auto& line : rosin::decay_lines(s, 0.35, poles)) {
+      const double x = line.pole.imag() / (2 * std::numbers::pi * 300e3) * std::numbers::pi, fejer = x > 0 ? std::pow(std::sin(x) / x, 2) : 1;
+      for (std::size_t e = 0; e < 2; ++e) sum[e] += fejer * line.residue[e].real();
+    }
+    const auto held = rosin::held_forces(s, 0.35);
+    for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-3));
+  }
 }
