@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <rosin/propagate/complex_dispersion.hpp>
 #include <rosin/propagate/dispersion.hpp>
+
+#include <rosin/propagate/complex_dispersion.hpp>
 
 #include <doctest/doctest.h>
 
