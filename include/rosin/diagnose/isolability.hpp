@@ -86,36 +86,6 @@ public:
     if (e.rebase) e.rebase(layout_, v);
     return of({e}, v) - plain_;
   }
-  /// What an effect that works on recordings takes out of them.
-  [[nodiscard]] Eigen::VectorXd undone(const pluck_effect& e, double value) const {
-    std::vector<pluck_take> takes = plan_.takes;
-    Eigen::VectorXd out(rows());
-    Eigen::Index at = 0;
-    for (std::size_t t = 0; t < takes.size(); ++t) {
-      const auto before = static_cast<Eigen::Index>(std::lround(release_s * takes[t].rate_Hz)), n = samples(t);
-      const auto held = held_forces(scene_plucks(layout_, plan_.guess.ac_coupled_Hz, {}).scene(value_, static_cast<int>(t)), takes[t].position);
-      for (std::size_t c = 0; c < 2; ++c) {
-        takes[t].force_N[c].assign(static_cast<std::size_t>(before), takes[t].strength_N * held[c]);
-        const auto* from = plain_.data() + at + static_cast<Eigen::Index>(c) * n;
-        takes[t].force_N[c].insert(takes[t].force_N[c].end(), from, from + n);
-      }
-      at += 2 * n;
-    }
-    const auto original = takes;
-    e.undo(takes, scene_plucks(layout_, plan_.guess.ac_coupled_Hz, {}).scene(value_, 0), layout_, value_, value);
-    at = 0;
-    for (std::size_t t = 0; t < takes.size(); ++t) {
-      const auto before = static_cast<std::size_t>(std::lround(release_s * takes[t].rate_Hz));
-      const Eigen::Index n = samples(t);
-      for (std::size_t c = 0; c < 2; ++c)
-        for (Eigen::Index i = 0; i < n; ++i) {
-          const std::size_t k = before + static_cast<std::size_t>(i);
-          out[at + static_cast<Eigen::Index>(c) * n + i] = original[t].force_N[c][k] - takes[t].force_N[c][k];
-        }
-      at += 2 * n;
-    }
-    return out;
-  }
   /// Orthonormal basis of all that the nuisances can do.
   [[nodiscard]] Eigen::MatrixXd nuisances() const {
     std::vector<Eigen::VectorXd> columns;
@@ -136,6 +106,37 @@ public:
 
 private:
   static constexpr double release_s = 0.004;
+  /// What an effect that works on recordings takes out of them.
+  [[nodiscard]] Eigen::VectorXd undone(const pluck_effect& e, double value) const {
+    std::vector<pluck_take> takes = plan_.takes;
+    const pluck_scene scene = scene_plucks(layout_, plan_.guess.ac_coupled_Hz, {}).scene(value_, 0);  // the same for all takes
+    Eigen::VectorXd out(rows());
+    Eigen::Index at = 0;
+    for (std::size_t t = 0; t < takes.size(); ++t) {
+      const auto before = static_cast<Eigen::Index>(std::lround(release_s * takes[t].rate_Hz)), n = samples(t);
+      const auto held = held_forces(scene, takes[t].position);
+      for (std::size_t c = 0; c < 2; ++c) {
+        takes[t].force_N[c].assign(static_cast<std::size_t>(before), takes[t].strength_N * held[c]);
+        const auto* from = plain_.data() + at + static_cast<Eigen::Index>(c) * n;
+        takes[t].force_N[c].insert(takes[t].force_N[c].end(), from, from + n);
+      }
+      at += 2 * n;
+    }
+    const auto original = takes;
+    e.undo(takes, scene, layout_, value_, value);
+    at = 0;
+    for (std::size_t t = 0; t < takes.size(); ++t) {
+      const auto before = static_cast<std::size_t>(std::lround(release_s * takes[t].rate_Hz));
+      const Eigen::Index n = samples(t);
+      for (std::size_t c = 0; c < 2; ++c)
+        for (Eigen::Index i = 0; i < n; ++i) {
+          const std::size_t k = before + static_cast<std::size_t>(i);
+          out[at + static_cast<Eigen::Index>(c) * n + i] = original[t].force_N[c][k] - takes[t].force_N[c][k];
+        }
+      at += 2 * n;
+    }
+    return out;
+  }
   [[nodiscard]] Eigen::Index samples(std::size_t t) const { return static_cast<Eigen::Index>(std::lround(plan_.duration_s * plan_.takes[t].rate_Hz)); }
   [[nodiscard]] Eigen::Index rows() const {
     Eigen::Index n = 0;

@@ -41,6 +41,16 @@ clamped_mode mode_between(const std::array<double, 2>& clamping, int n, double B
   return out;
 }
 
+/// What lines up to `top_Hz` come to at the instant of the release, their sum smoothed (Fejer).
+std::array<double, 2> sum_of(const std::vector<rosin::damped_line>& lines, double top_Hz) {
+  std::array<double, 2> sum{};
+  for (const auto& line : lines) {
+    const double x = line.pole.imag() / (2 * top_Hz), fejer = x > 0 ? std::pow(std::sin(x) / x, 2) : 1;
+    for (std::size_t e = 0; e < 2; ++e) sum[e] += fejer * line.residue[e].real();
+  }
+  return sum;
+}
+
 }  // namespace
 
 TEST_CASE("without anything on it the string has its own poles, with the residues of a pluck") {
@@ -165,12 +175,7 @@ TEST_CASE("an end that is damped and hardly held: what relaxes is one of the lin
   REQUIRE(poles.front().imag() == 0);
   CHECK(poles.front().real() == doctest::Approx(-(corner + 600 * conductance)).epsilon(0.01));
   // Of the static forces a triangle's sum of partials and the relaxation are left: F (1 - x, x) of a string longer by the end's yield.
-  const auto lines = rosin::decay_lines(s, 0.3, poles);
-  std::array<double, 2> sum{};
-  for (const auto& line : lines) {
-    const double x = line.pole.imag() / (2 * std::numbers::pi * 120e3) * std::numbers::pi, fejer = x > 0 ? std::pow(std::sin(x) / x, 2) : 1;
-    for (std::size_t e = 0; e < 2; ++e) sum[e] += fejer * line.residue[e].real();
-  }
+  const auto sum = sum_of(rosin::decay_lines(s, 0.3, poles), 120e3);
   const double longer = 600 * conductance / corner;
   const auto held = rosin::held_forces(s, 0.3);
   CHECK(held[1] == doctest::Approx(0.3 / (1 + longer)));
@@ -192,11 +197,7 @@ TEST_CASE("ends that are alike have poles of their own: all lines together are w
     for (std::size_t i = 0; i < poles.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, std::abs(poles[i] - poles[j]));
     CHECK(nearest > 0.01);
-    std::array<double, 2> sum{};
-    for (const auto& line : rosin::decay_lines(s, 0.35, poles)) {
-      const double x = line.pole.imag() / (2 * std::numbers::pi * 300e3) * std::numbers::pi, fejer = x > 0 ? std::pow(std::sin(x) / x, 2) : 1;
-      for (std::size_t e = 0; e < 2; ++e) sum[e] += fejer * line.residue[e].real();
-    }
+    const auto sum = sum_of(rosin::decay_lines(s, 0.35, poles), 300e3);
     const auto held = rosin::held_forces(s, 0.35);
     for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-3));
   }

@@ -5,6 +5,8 @@
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/simulate/modal_pluck.hpp>
 
+#include "support/apart.hpp"
+
 #include <doctest/doctest.h>
 
 namespace {
@@ -13,12 +15,6 @@ const rosin::modal_rig rig{{.length_m = 0.32, .tension_N = 70, .fundamental_Hz =
 constexpr double rate_Hz = 128000;
 constexpr int oversampling = 16;
 constexpr double step_s = 1 / rate_Hz / oversampling;
-
-double apart(const std::vector<double>& a, const std::vector<double>& b, std::size_t from, std::size_t to) {
-  double off = 0, all = 0;
-  for (std::size_t i = from; i < to; ++i) off += std::pow(a[i] - b[i], 2), all += b[i] * b[i];
-  return std::sqrt(off / all);
-}
 
 }  // namespace
 
@@ -30,7 +26,7 @@ TEST_CASE("a pluck of a string without a burden is that of the closed form") {
     const auto near = decimate.points(steps.end_N[0]);
     const auto truth = rosin::simulate_pluck(rig, {.release_s = 0.004, .release_duration_s = duration, .duration_s = 0.02});
     REQUIRE(truth);
-    CHECK(apart(near, truth->force_near_N, 0, 2400) < (duration > 0 ? 5e-5 : 1e-6));
+    CHECK(test::apart(near, std::span(truth->force_near_N).first(2400)) < (duration > 0 ? 5e-5 : 1e-6));
   }
 }
 
@@ -48,8 +44,8 @@ TEST_CASE("a wire of some width plucks as many narrow ones beside each other do"
     const auto of_one = rosin::step_pluck(rig, {}, one, duration_s, 150e3, step_s);
     for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += of_one.end_N[0][n] / wires;
   }
-  CHECK(apart(steps.end_N[0], sum, 0, sum.size()) < 2e-3);  // all frequencies alike
-  CHECK(apart(rosin::step_pluck(rig, {}, narrow, duration_s, 150e3, step_s).end_N[0], sum, 0, sum.size()) > 0.015);
+  CHECK(test::apart(steps.end_N[0], sum) < 2e-3);  // all frequencies alike
+  CHECK(test::apart(rosin::step_pluck(rig, {}, narrow, duration_s, 150e3, step_s).end_N[0], sum) > 0.015);
 }
 
 TEST_CASE("a transducer that feels the tension reads the string's strain besides") {
@@ -75,10 +71,10 @@ TEST_CASE("a stroke is that of modal_stroke; a contact of no width is one of ver
   const auto plain = play({}, 0);
   const rosin::modal_contact peer{rig, 0.3, 250e3, step_s};
   CHECK(plain.force_N.size() == plain.end_N[0].size());
-  CHECK(apart(play({100, 900, 10}, 0).force_N, plain.force_N, 0, plain.force_N.size()) < 1e-3);
-  CHECK(apart(play({0.003, 900, 10}, 0).force_N, plain.force_N, 0, plain.force_N.size()) > 0.02);
+  CHECK(test::apart(play({100, 900, 10}, 0).force_N, plain.force_N) < 1e-3);
+  CHECK(test::apart(play({0.003, 900, 10}, 0).force_N, plain.force_N) > 0.02);
   const auto early = static_cast<std::size_t>(0.0075 / step_s);  // until the first slips: then the smallest difference grows
-  CHECK(apart(play({}, 1e-5).force_N, plain.force_N, 0, early) < 0.02);
+  CHECK(test::apart(play({}, 1e-5).force_N, std::span(plain.force_N).first(early)) < 0.02);
 
   rosin::modal_settings settings{.oversampling = oversampling};
   const auto other = rosin::simulate_stroke(rig, law, motion, {.position = 0.3, .duration_s = 0.02}, settings);
@@ -94,5 +90,5 @@ TEST_CASE("a stroke is that of modal_stroke; a contact of no width is one of ver
     const double u = static_cast<double>(i) + offset - static_cast<double>(j);
     late.push_back((1 - u) * other->force_near_N[j] + u * other->force_near_N[j + 1]);
   }
-  CHECK(apart(near, late, 0, 900) < 0.05);  // up to the straight line between two samples
+  CHECK(test::apart(near, std::span(late).first(900)) < 0.05);  // up to the straight line between two samples
 }
