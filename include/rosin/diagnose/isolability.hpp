@@ -171,7 +171,8 @@ template <class Change>
     now = change(values);
     power = std::clamp(std::log(now / was) / std::log(values[i] / before), 0.2, 5.0);
   }
-  return now < 0.9 * target ? std::numeric_limits<double>::quiet_NaN() : values[i];  // not seen even at its largest
+  const bool vanishes = power > 0.3;  // not where a weak mode stands upon a partial and the lines of the two cannot be told apart
+  return now < 0.9 * target || !vanishes ? std::numeric_limits<double>::quiet_NaN() : values[i];  // nor if not seen even at its largest
 }
 
 }  // namespace detail
