@@ -30,6 +30,7 @@ int main() {
   double worst = 0;
   for (std::size_t n = valid.begin; n < valid.end; ++n)
     worst = std::fmax(worst, std::abs(out[n] - std::sin(2.5 * (static_cast<double>(n) - 29.105))));
-  std::printf("%zu taps, samples %zu to %zu, worst error %.0f dB\n", later->taps(), valid.begin, valid.end, 20 * std::log10(worst));
+  std::printf("%zu taps, samples %zu to %zu, worst error %.0f dB\n", later->taps(), valid.begin, valid.end,
+              20 * std::log10(worst));
   return worst < 1e-6 ? 0 : 1;
 }

@@ -22,8 +22,8 @@ int main() {
   rosin::pluck_take take{.name = "pluck-1", .rate_Hz = pluck->sample_rate_Hz};
   take.force_N = {rosin::convert(pluck->force_near_N, take.rate_Hz, sensor, 1).newtons(),
                   rosin::convert(pluck->force_far_N, take.rate_Hz, sensor, 2).newtons()};
-  take.strength_N = 1.0;   // what the wire is sold for, within 3 %
-  take.position = 0.31;    // where the laboratory believes it was
+  take.strength_N = 1.0;  // what the wire is sold for, within 3 %
+  take.position = 0.31;   // where the laboratory believes it was
 
   const auto fit = rosin::fit_plucks({take}, {.fundamental_Hz = 655});
   if (!fit) {

@@ -11,19 +11,16 @@
 
 namespace {
 
-const rosin::string_parameters string{.length_m = 0.314,
-                                      .tension_N = 72.5,
-                                      .fundamental_Hz = 660,
-                                      .bending_stiffness_Nm2 = 4.7e-5,
-                                      .loss = {.quality = 1000}};
+const rosin::string_parameters string{
+    .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
 
 }  // namespace
 
 int main() {
   // Another method than the one that is inverted makes the recording: modes, stepped under a friction law.
-  const auto take = rosin::simulate_stroke({.string = string}, rosin::velocity_curve{rosin::two_exponential_curve<>{}},
-                                           rosin::steady_rod{.speed_m_s = 0.2, .normal_force_N = 0.3},
-                                           {.position = 0.3, .duration_s = 0.1});
+  const auto take =
+      rosin::simulate_stroke({.string = string}, rosin::velocity_curve{rosin::two_exponential_curve<>{}},
+                             rosin::steady_rod{.speed_m_s = 0.2, .normal_force_N = 0.3}, {.position = 0.3, .duration_s = 0.1});
   if (!take) return 1;
 
   const rosin::band limits{20e3, 40e3};

@@ -38,7 +38,8 @@ stroke bow(double speed, double normal, std::uint64_t seed) {
   rosin::reconstructor<double> reconstruct(rosin::contact_at(rig.string, position), {38400, 57600}, 128e3);
   const auto motion = reconstruct(rosin::convert(take->force_near_N, 128e3, sensor, seed).newtons(),
                                   rosin::convert(take->force_far_N, 128e3, sensor, seed + 1).newtons());
-  for (std::size_t i = 0; i < take->size(); ++i) s.force.push_back(motion.force_N(i)), s.velocity.push_back(motion.velocity_m_s(i));
+  for (std::size_t i = 0; i < take->size(); ++i)
+    s.force.push_back(motion.force_N(i)), s.velocity.push_back(motion.velocity_m_s(i));
   return s;
 }
 
@@ -62,7 +63,8 @@ int main() {
   const auto& best = found.hypotheses.front();
   std::printf("most likely left out: %s\n", best.effect.c_str());
   for (const auto& p : best.parameters) std::printf("  %-16s %7.3f +- %.3f\n", p.name.c_str(), p.value, p.sd);
-  std::printf("fluctuation while sticking: %.3f of the rod's speed before, %.3f after\n", found.stick_fluctuation, best.fluctuation);
+  std::printf("fluctuation while sticking: %.3f of the rod's speed before, %.3f after\n", found.stick_fluctuation,
+              best.fluctuation);
 
   const auto then = rosin::contact_hypotheses(takes, rosin::include({}, best));
   std::printf("with it, the contact is %s\n", then.as_declared ? "as declared" : then.hypotheses.front().effect.c_str());

@@ -16,12 +16,9 @@
 
 namespace {
 
-const rosin::modal_rig rig{.string = {.length_m = 0.33,
-                                      .tension_N = 45,
-                                      .fundamental_Hz = 196,
-                                      .bending_stiffness_Nm2 = 1e-5,
-                                      .loss = {.quality = 300}},
-                           .torsion = {.speed_ratio = 5.2, .impedance_ratio = 2.6, .quality = 30}};
+const rosin::modal_rig rig{
+    .string = {.length_m = 0.33, .tension_N = 45, .fundamental_Hz = 196, .bending_stiffness_Nm2 = 1e-5, .loss = {.quality = 300}},
+    .torsion = {.speed_ratio = 5.2, .impedance_ratio = 2.6, .quality = 30}};
 const rosin::wave_settings settings{.sample_rate_Hz = 32000, .oversampling = 4, .band_Hz = 20e3};
 
 char letter(const rosin::regime_finding& found) {
@@ -32,7 +29,8 @@ char letter(const rosin::regime_finding& found) {
 
 char bow(const rosin::wave_design& design, double acceleration_m_s2, double normal_N) {
   const rosin::profiled_rod rod{{}, {{0, 0}, {0.3 / acceleration_m_s2, 0.3}}, {{0, normal_N}}};
-  const auto take = rosin::simulate_wave_stroke(design, rig, rosin::velocity_curve{rosin::two_exponential_curve<>{}}, rod, 0.16, settings);
+  const auto take =
+      rosin::simulate_wave_stroke(design, rig, rosin::velocity_curve{rosin::two_exponential_curve<>{}}, rod, 0.16, settings);
   if (!take) return '?';
   std::vector<double> slip(take->size());
   for (std::size_t n = 0; n < slip.size(); ++n)

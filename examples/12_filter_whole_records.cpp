@@ -15,8 +15,10 @@ struct kernel {
 };
 
 int main() {
-  const std::vector<kernel> kernels{{0, {1.0}}, {-1, {1.0}},    // output 0 from inputs 0 and 1
-                                    {0, {1.0}}, {-1, {-0.5}}};  // output 1 from inputs 0 and 1
+  const std::vector<kernel> kernels{{0, {1.0}},
+                                    {-1, {1.0}},  // output 0 from inputs 0 and 1
+                                    {0, {1.0}},
+                                    {-1, {-0.5}}};  // output 1 from inputs 0 and 1
   rosin::block_convolver<float> convolver(2, kernels);
 
   const std::vector<float> left{1, 2, 3, 4, 5, 6}, right{0, 1, 2, 3, 4, 5};

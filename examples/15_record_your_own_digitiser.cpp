@@ -54,7 +54,9 @@ int main() {
   while (take->frames() < 96000) {
     const auto got = source.read(block, std::chrono::milliseconds{100});
     const auto frames = std::span{block}.first(2 * got.frames);
-    if (got.lost > 0) std::printf("%llu frames are missing at frame %llu\n", static_cast<unsigned long long>(got.lost), static_cast<unsigned long long>(take->frames()));
+    if (got.lost > 0)
+      std::printf("%llu frames are missing at frame %llu\n", static_cast<unsigned long long>(got.lost),
+                  static_cast<unsigned long long>(take->frames()));
     lost += got.lost;
     meter.push(frames);
     if (const auto why = take->write(frames)) {

@@ -25,6 +25,7 @@ int main() {
     frames += packet->samples.size() / 2;
     lost += packet->lost;
   }
-  std::printf("%llu frames arrived, %llu are missing\n", static_cast<unsigned long long>(frames), static_cast<unsigned long long>(lost));
+  std::printf("%llu frames arrived, %llu are missing\n", static_cast<unsigned long long>(frames),
+              static_cast<unsigned long long>(lost));
   return lost == 64 && frames == 576 ? 0 : 1;
 }

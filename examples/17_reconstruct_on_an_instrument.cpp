@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// From a pluck and a bridge admittance file to the friction force on an instrument. The string ends on a bridge that moves; its admittance
-// was measured with a small hammer. Here both are simulated, so that the truth can be told.
+// From a pluck and a bridge admittance file to the friction force on an instrument. The string ends on a bridge that moves; its
+// admittance was measured with a small hammer. Here both are simulated, so that the truth can be told.
 //
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/calibrate/end_fit.hpp>
@@ -15,8 +15,11 @@
 namespace {
 
 constexpr double rate_Hz = 40e3;
-const rosin::string_parameters string{.length_m = 0.33, .tension_N = 50, .fundamental_Hz = 440, .bending_stiffness_Nm2 = 2e-5, .loss = {.quality = 900}};
-const rosin::modal_termination body{{{290, 30, string.impedance_Ns_m() / 0.15}, {550, 35, string.impedance_Ns_m() / 0.10}, {2400, 10, string.impedance_Ns_m() / 0.03}}};
+const rosin::string_parameters string{
+    .length_m = 0.33, .tension_N = 50, .fundamental_Hz = 440, .bending_stiffness_Nm2 = 2e-5, .loss = {.quality = 900}};
+const rosin::modal_termination body{{{290, 30, string.impedance_Ns_m() / 0.15},
+                                     {550, 35, string.impedance_Ns_m() / 0.10},
+                                     {2400, 10, string.impedance_Ns_m() / 0.03}}};
 
 /// What both ends feel of a force at 0.12 of the length, through the closed form of moving_string.hpp.
 std::array<std::vector<double>, 2> felt(const std::vector<double>& force_N) {
@@ -49,7 +52,8 @@ std::vector<double> jumping_force(std::size_t samples) {
   std::vector<double> force(samples, 0.0);
   for (std::size_t n = 400; n < samples; ++n) {
     const double t = static_cast<double>(n - 400) / rate_Hz, turn = 2 * std::numbers::pi * 438 * t;
-    force[n] = std::min(1.0, t / 0.01) * (0.3 * std::sin(turn) + 0.2 * std::sin(2 * turn + 1) + 0.15 * std::sin(5 * turn) + 0.1 * std::sin(9 * turn));
+    force[n] = std::min(1.0, t / 0.01) *
+               (0.3 * std::sin(turn) + 0.2 * std::sin(2 * turn + 1) + 0.15 * std::sin(5 * turn) + 0.1 * std::sin(9 * turn));
   }
   return force;
 }
@@ -75,8 +79,10 @@ int main() {
 
   double missed = 0, missed_rigid = 0, all = 0;
   for (std::size_t n = found.known.begin + 200; n + 200 < found.known.end; ++n) {
-    missed += std::pow(found.force_N(n) - truth[n], 2), missed_rigid += std::pow(rigid.force_N(n) - truth[n], 2), all += truth[n] * truth[n];
+    missed += std::pow(found.force_N(n) - truth[n], 2), missed_rigid += std::pow(rigid.force_N(n) - truth[n], 2),
+        all += truth[n] * truth[n];
   }
-  std::cout << "force missed by " << 100 * std::sqrt(missed / all) << " %; by " << 100 * std::sqrt(missed_rigid / all) << " % with a rigid bridge\n";
+  std::cout << "force missed by " << 100 * std::sqrt(missed / all) << " %; by " << 100 * std::sqrt(missed_rigid / all)
+            << " % with a rigid bridge\n";
   return missed < 0.02 * 0.02 * all && missed < missed_rigid / 9 ? 0 : 1;
 }

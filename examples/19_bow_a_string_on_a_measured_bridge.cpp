@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// A string that is bowed on a measured bridge, running free. The table of admittance is completed, given modes that reflect as it does, and the
-// travelling waves meet them at the near end. The body has one strong resonance, and the string is tuned across it: where both meet, a wolf
-// sits, and the note beats. Printed for each pitch: its beating, by least and greatest size of the fundamental at the bridge.
+// A string that is bowed on a measured bridge, running free. The table of admittance is completed, given modes that reflect as it
+// does, and the travelling waves meet them at the near end. The body has one strong resonance, and the string is tuned across it:
+// where both meet, a wolf sits, and the note beats. Printed for each pitch: its beating, by least and greatest size of the
+// fundamental at the bridge.
 //
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/propagate/termination_modes.hpp>
@@ -19,7 +20,11 @@ const rosin::wave_settings settings{.sample_rate_Hz = rate_Hz, .oversampling = 4
 
 rosin::modal_rig tuned_to(double pitch_Hz) {
   const double speed_m_s = 2 * 0.69 * pitch_Hz, density_kg_m = 8e-3;  // a cello's G string, stopped or not
-  return {.string = {.length_m = 0.69, .tension_N = density_kg_m * speed_m_s * speed_m_s, .fundamental_Hz = pitch_Hz, .bending_stiffness_Nm2 = 2e-4, .loss = {.quality = 500}}};
+  return {.string = {.length_m = 0.69,
+                     .tension_N = density_kg_m * speed_m_s * speed_m_s,
+                     .fundamental_Hz = pitch_Hz,
+                     .bending_stiffness_Nm2 = 2e-4,
+                     .loss = {.quality = 500}}};
 }
 
 /// As a hammer and a laser would write it down, m/s per N.

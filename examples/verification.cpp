@@ -21,8 +21,10 @@ void row(const char* processing, const proof::verdict& v) {
 void exact_parameters(bool thermal) {
   const rosin::modal_take take = proof::paper_take(thermal);
   std::printf("\n## Exact parameters, no noise: %s\n\n", thermal ? "thermal friction" : "friction as a function of velocity");
-  std::printf("| processing | two versions | force | velocity | force, first 60 ms | force, last 200 ms |\n|---|---|---|---|---|---|\n");
-  row("the paper's, Eq. (6) as printed", proof::with_exact_parameters<physics<false, false, false, airy_passage<airy_form::printed>>>(take));
+  std::printf(
+      "| processing | two versions | force | velocity | force, first 60 ms | force, last 200 ms |\n|---|---|---|---|---|---|\n");
+  row("the paper's, Eq. (6) as printed",
+      proof::with_exact_parameters<physics<false, false, false, airy_passage<airy_form::printed>>>(take));
   row("the paper's, Airy kernel as an all-pass", proof::with_exact_parameters<rosin::paper_physics>(take));
   row("the paper's, exact phase", proof::with_exact_parameters<physics<false, false, false, exact_passage>>(take));
   row("with force factor and near field", proof::with_exact_parameters<physics<true, true, false, exact_passage>>(take));
@@ -39,15 +41,16 @@ void plucks(const char* heading, rosin::damping_convention damping, int rigs) {
 }
 
 void chain_row(const std::string& name, const proof::chain_row& r) {
-  std::printf("| %s | %.3f | %.4f | %.4f | %.4f | %+.2f %% | %.2f %% | %.1f %% | %.2f | %.1f %% | %.2f |\n", name.c_str(), r.position,
-              r.made.whole.versions, r.made.whole.force, r.made.whole.velocity, 100 * r.scale_error, 100 * r.scale_sd, 100 * r.force_inside,
-              r.force_width, 100 * r.velocity_inside, r.velocity_width);
+  std::printf("| %s | %.3f | %.4f | %.4f | %.4f | %+.2f %% | %.2f %% | %.1f %% | %.2f | %.1f %% | %.2f |\n", name.c_str(),
+              r.position, r.made.whole.versions, r.made.whole.force, r.made.whole.velocity, 100 * r.scale_error, 100 * r.scale_sd,
+              100 * r.force_inside, r.force_width, 100 * r.velocity_inside, r.velocity_width);
 }
 
 void chain_heading(const char* title) {
   std::printf("\n## %s\n\n", title);
-  std::printf("| take | beta | two versions | force | velocity | scale off by | stated | force within 1.96 sd | sd / error | "
-              "velocity within | sd / error |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| take | beta | two versions | force | velocity | scale off by | stated | force within 1.96 sd | sd / error | "
+      "velocity within | sd / error |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
 void whole_chain() {
@@ -60,12 +63,15 @@ void whole_chain() {
 void random_rigs() {
   const proof::chain_result all = proof::run_random_rigs(1, 24);
   chain_heading("The whole chain on 24 random rigs: 16 bits, 0.3 to 0.5 mN of noise");
-  for (const proof::chain_row& r : all.rows) chain_row("rig " + std::to_string(r.seed) + (r.thermal ? " t, " : " c, ") + r.take, r);
+  for (const proof::chain_row& r : all.rows)
+    chain_row("rig " + std::to_string(r.seed) + (r.thermal ? " t, " : " c, ") + r.take, r);
   const auto worst = std::max_element(all.rows.begin(), all.rows.end(),
                                       [](const auto& a, const auto& b) { return a.made.whole.force < b.made.whole.force; });
-  std::printf("\n%zu takes; %d without stick-slip motion left out; %zu failures. Worst against the truth: %.4f (rig %llu, %s: force of %.3f N rms).\n",
-              all.rows.size(), all.without_slip, all.failures.size(), worst->made.whole.force,
-              static_cast<unsigned long long>(worst->seed), worst->take.c_str(), worst->force_rms_N);
+  std::printf(
+      "\n%zu takes; %d without stick-slip motion left out; %zu failures. Worst against the truth: %.4f (rig %llu, %s: force of "
+      "%.3f N rms).\n",
+      all.rows.size(), all.without_slip, all.failures.size(), worst->made.whole.force,
+      static_cast<unsigned long long>(worst->seed), worst->take.c_str(), worst->force_rms_N);
   for (const std::string& failure : all.failures) std::printf("failed: %s\n", failure.c_str());
 }
 

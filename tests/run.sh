@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, then builds and runs the tests with sanitizers. Whatever is up to date is not built again.
+# Installs what is missing, then builds and runs the tests with sanitizers, but those that take long (ctest --preset long). Whatever is
+# up to date is not built again.
 #   tests/run.sh [PRESET]     dev (default: Clang), gcc, release or release-clang
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The calibration from plucks of 0.14 s at 128 kHz, a modal string through 16-bit converters: the whole fit, from the declared values to
-// the covariance, beside what a plain least-squares fit would do in each of its steps, all in the same run: the model sample by sample, once
-// as it is and once for each free parameter (line sums at their best; such a fit takes five to ten steps).
+// The calibration from plucks of 0.14 s at 128 kHz, a modal string through 16-bit converters: the whole fit, from the declared
+// values to the covariance, beside what a plain least-squares fit would do in each of its steps, all in the same run: the model
+// sample by sample, once as it is and once for each free parameter (line sums at their best; such a fit takes five to ten steps).
 #include <rosin/calibrate/pluck_fit.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/simulate/converter.hpp>
@@ -14,7 +14,11 @@ namespace {
 const rosin::pluck_guess guess{.fundamental_Hz = 660};
 
 std::vector<rosin::pluck_take> plucks(std::int64_t count) {
-  constexpr rosin::modal_rig rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}}};
+  constexpr rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                            .tension_N = 72.5,
+                                            .fundamental_Hz = 659.69,
+                                            .bending_stiffness_Nm2 = 4.7e-5,
+                                            .loss = {.quality = 1000}}};
   std::vector<rosin::pluck_take> out;
   for (std::int64_t i = 0; i < count; ++i) {
     const double force_N = 1 - 0.2 * static_cast<double>(i);
@@ -23,7 +27,8 @@ std::vector<rosin::pluck_take> plucks(std::int64_t count) {
     const auto seed = static_cast<std::uint64_t>(2 * i);
     rosin::pluck_take take;
     take.name = std::to_string(i), take.rate_Hz = made->sample_rate_Hz, take.strength_N = force_N, take.position = 0.304;
-    take.force_N = {rosin::convert(made->force_near_N, take.rate_Hz, sensor, seed).newtons(), rosin::convert(made->force_far_N, take.rate_Hz, sensor, seed + 1).newtons()};
+    take.force_N = {rosin::convert(made->force_near_N, take.rate_Hz, sensor, seed).newtons(),
+                    rosin::convert(made->force_far_N, take.rate_Hz, sensor, seed + 1).newtons()};
     out.push_back(std::move(take));
   }
   return out;
@@ -51,7 +56,8 @@ void pluck_fit_one_plain_step(benchmark::State& state) {
     for (std::size_t t = 0; t < takes.size(); ++t) {
       benchmark::DoNotOptimize(rosin::detail::residual_of(problem, fit->value, t));
       for (Eigen::Index p = 0; p < problem.model().size(); ++p)
-        if (problem.model().is_free(p) && problem.model().concerns(p, t)) benchmark::DoNotOptimize(rosin::detail::residual_of(problem, fit->value, t));
+        if (problem.model().is_free(p) && problem.model().concerns(p, t))
+          benchmark::DoNotOptimize(rosin::detail::residual_of(problem, fit->value, t));
     }
 }
 

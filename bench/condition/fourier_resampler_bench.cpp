@@ -19,7 +19,9 @@ std::vector<T> cosines(std::size_t n, std::size_t band) {
   for (std::size_t i = 1; i <= 40; ++i) {
     const std::size_t cycles = (band - 1) / 2 * i / 40;
     for (std::size_t j = 0; j < n; ++j)
-      sum[j] += std::cos(2 * std::numbers::pi_v<long double> * static_cast<long double>(cycles * j % n) / static_cast<long double>(n) + static_cast<long double>(i * i));
+      sum[j] +=
+          std::cos(2 * std::numbers::pi_v<long double> * static_cast<long double>(cycles * j % n) / static_cast<long double>(n) +
+                   static_cast<long double>(i * i));
   }
   return {sum.begin(), sum.end()};
 }
@@ -43,7 +45,13 @@ void resample(benchmark::State& state) {
 }
 
 void lengths(benchmark::internal::Benchmark* bench) {
-  bench->Args({16384, 12288})->Args({12288, 16384})->Args({17921, 16384})->Args({16384, 17921})->Args({17921, 17923})->Args({99991, 100003})->Args({199999, 131072});
+  bench->Args({16384, 12288})
+      ->Args({12288, 16384})
+      ->Args({17921, 16384})
+      ->Args({16384, 17921})
+      ->Args({17921, 17923})
+      ->Args({99991, 100003})
+      ->Args({199999, 131072});
   bench->Unit(benchmark::kMillisecond);
 }
 

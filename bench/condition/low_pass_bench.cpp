@@ -23,7 +23,8 @@ double end_effect_dB(const rosin::band& limits, std::size_t distance) {
     for (int quarter = 0; quarter < 4; ++quarter) {
       std::vector<double> x(8000);
       for (std::size_t n = 0; n < x.size(); ++n)
-        x[n] = std::cos(2 * std::numbers::pi * limits.pass_Hz * i / 10 / rate_Hz * static_cast<double>(n) + quarter * std::numbers::pi / 4);
+        x[n] = std::cos(2 * std::numbers::pi * limits.pass_Hz * i / 10 / rate_Hz * static_cast<double>(n) +
+                        quarter * std::numbers::pi / 4);
       const std::vector<double> y = rosin::low_pass<double>(x, rate_Hz, limits);
       for (std::size_t n = distance; n + distance < x.size(); ++n) worst = std::max(worst, std::abs(y[n] - x[n]));
     }
@@ -42,4 +43,9 @@ void low_pass(benchmark::State& state) {
 
 }  // namespace
 
-BENCHMARK(low_pass)->Name("low_pass/double/pass_stop")->Args({20000, 60000})->Args({10000, 30000})->Args({8000, 12000})->Unit(benchmark::kMillisecond);
+BENCHMARK(low_pass)
+    ->Name("low_pass/double/pass_stop")
+    ->Args({20000, 60000})
+    ->Args({10000, 30000})
+    ->Args({8000, 12000})
+    ->Unit(benchmark::kMillisecond);

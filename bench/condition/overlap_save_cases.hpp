@@ -35,7 +35,8 @@ std::vector<T> noise(std::size_t n, unsigned seed) {
   return x;
 }
 
-/// The spans that the kernels of the paper's string have at 1e-5: inverse of one side and the other side; and both of the one side.
+/// The spans that the kernels of the paper's string have at 1e-5: inverse of one side and the other side; and both of the one
+/// side.
 inline std::vector<kernel> kernels() {
   return {{-49, noise<double>(50, 1)}, {22, noise<double>(64, 2)}, {-49, noise<double>(99, 3)}, {0, {}}};
 }
@@ -47,7 +48,8 @@ struct record {
 };
 
 inline void report(benchmark::State& state) {
-  state.counters["x_real_time"] = benchmark::Counter(duration_s * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  state.counters["x_real_time"] =
+      benchmark::Counter(duration_s * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
 template <class T, class Fft>

@@ -22,12 +22,20 @@ void ten_seconds(benchmark::State& state) {
   }
   double worst = -400;
   for (int fortieth = 1; fortieth < 40; ++fortieth)
-    worst = std::max(worst, rosin::delay_error_dB(*rosin::design_kaiser_delay(fortieth / 40.0, limits), fortieth / 40.0, limits.bandwidth));
+    worst = std::max(
+        worst, rosin::delay_error_dB(*rosin::design_kaiser_delay(fortieth / 40.0, limits), fortieth / 40.0, limits.bandwidth));
   state.counters["taps"] = static_cast<double>(delay->taps());
   state.counters["worst_dB"] = worst;
 }
 
 }  // namespace
 
-BENCHMARK_TEMPLATE(ten_seconds, double)->Name("record_delay/double/percent_dB")->ArgsProduct({{50, 80, 90, 95}, {-60, -100, -140, -200}})->Unit(benchmark::kMillisecond);
-BENCHMARK_TEMPLATE(ten_seconds, float)->Name("record_delay/float/percent_dB")->Args({80, -100})->Args({80, -140})->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(ten_seconds, double)
+    ->Name("record_delay/double/percent_dB")
+    ->ArgsProduct({{50, 80, 90, 95}, {-60, -100, -140, -200}})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(ten_seconds, float)
+    ->Name("record_delay/float/percent_dB")
+    ->Args({80, -100})
+    ->Args({80, -140})
+    ->Unit(benchmark::kMillisecond);

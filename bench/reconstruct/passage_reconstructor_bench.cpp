@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Streaming reconstruction of force and velocity at 128 kHz, both versions, kernels to 1e-3: how many times faster than the string
-// plays it, by length of block, beside two others in the same run: the eight direct filters of streaming_reconstructor.hpp and the
-// same four passages by std::inner_product. mean_us, p999_us and worst_us: of a hundred thousand blocks, each timed by itself; the
-// clock's own time and the system's interruptions are in them. of_block: what the 999th of a thousand takes of the time it has.
+// Streaming reconstruction of force and velocity at 128 kHz, both versions, kernels to 1e-3: how many times faster than the
+// string plays it, by length of block, beside two others in the same run: the eight direct filters of streaming_reconstructor.hpp
+// and the same four passages by std::inner_product. mean_us, p999_us and worst_us: of a hundred thousand blocks, each timed by
+// itself; the clock's own time and the system's interruptions are in them. of_block: what the 999th of a thousand takes of the
+// time it has.
 #include <rosin/reconstruct/passage_design.hpp>
 #include <rosin/reconstruct/passage_reconstructor.hpp>
 #include <rosin/reconstruct/streaming_design.hpp>
@@ -27,7 +28,8 @@ template <class T>
 std::vector<rosin::termination_frame<T>> forces() {
   std::vector<rosin::termination_frame<T>> out(8192);
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = {static_cast<T>(std::sin(1.7 * static_cast<double>(i * i % 1013))), static_cast<T>(std::cos(1.1 * static_cast<double>(i * i % 977)))};
+    out[i] = {static_cast<T>(std::sin(1.7 * static_cast<double>(i * i % 1013))),
+              static_cast<T>(std::cos(1.1 * static_cast<double>(i * i % 977)))};
   return out;
 }
 
@@ -95,7 +97,9 @@ void inner_products(benchmark::State& state) {
   std::vector<rosin::bow_frame<T>> out(8192);
   timed<T>(state, [&](const rosin::termination_frame<T>*, std::size_t block) {
     for (std::size_t i = 0; i < block; ++i) {
-      const auto dot = [&](std::size_t p) { return std::inner_product(taps[p].begin(), taps[p].end(), line.begin() + static_cast<std::ptrdiff_t>(i), T(0)); };
+      const auto dot = [&](std::size_t p) {
+        return std::inner_product(taps[p].begin(), taps[p].end(), line.begin() + static_cast<std::ptrdiff_t>(i), T(0));
+      };
       out[i] = {dot(0), dot(1), dot(2), dot(3)};
     }
     benchmark::ClobberMemory();

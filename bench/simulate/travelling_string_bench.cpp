@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// String-samples (steps of the contact) per second on one core under a contact that travels: waves against modes, with stiffness, torsion and a velocity
-// curve; kernels are designed outside the clock.
+// String-samples (steps of the contact) per second on one core under a contact that travels: waves against modes, with stiffness,
+// torsion and a velocity curve; kernels are designed outside the clock.
 #include <rosin/simulate/travelling_string.hpp>
 
 #include <benchmark/benchmark.h>
@@ -11,7 +11,11 @@
 namespace {
 
 const rosin::steady_rod rod{.speed_m_s = 0.1, .normal_force_N = 0.2, .start_s = 0, .rise_s = 0.01};
-const rosin::modal_rig rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 500}},
+const rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                      .tension_N = 72.5,
+                                      .fundamental_Hz = 660,
+                                      .bending_stiffness_Nm2 = 4.7e-5,
+                                      .loss = {.quality = 500}},
                            .torsion = {.speed_ratio = 7.0, .impedance_ratio = 3.5, .quality = 15}};
 
 rosin::velocity_curve<rosin::two_exponential_curve<>> curve() { return rosin::velocity_curve{rosin::two_exponential_curve<>{}}; }

@@ -16,7 +16,11 @@ constexpr double position = 0.12;
 const rosin::steady_rod rod{.speed_m_s = 0.1, .normal_force_N = 0.2, .start_s = 0, .rise_s = 0.01};
 
 rosin::modal_rig rig(bool stiff, bool turns) {
-  return {.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = stiff ? 4.7e-5 : 0, .loss = {.quality = 500}},
+  return {.string = {.length_m = 0.314,
+                     .tension_N = 72.5,
+                     .fundamental_Hz = 660,
+                     .bending_stiffness_Nm2 = stiff ? 4.7e-5 : 0,
+                     .loss = {.quality = 500}},
           .torsion = {.speed_ratio = turns ? 7.0 : 0.0, .impedance_ratio = 3.5, .quality = 15}};
 }
 
@@ -37,7 +41,8 @@ void loop(benchmark::State& state, const rosin::modal_rig& string, Law law) {
   constexpr int steps = 100000;
   double t = 0;
   for (auto _ : state)
-    for (int n = 0; n < steps; ++n, t += settings.step_s()) benchmark::DoNotOptimize(waves.apply(law(waves.line(rod(t))).force_N));
+    for (int n = 0; n < steps; ++n, t += settings.step_s())
+      benchmark::DoNotOptimize(waves.apply(law(waves.line(rod(t))).force_N));
   state.SetItemsProcessed(state.iterations() * steps);
 }
 
@@ -64,7 +69,9 @@ void whole_take(benchmark::State& state) {
 void plain(benchmark::State& state) { loop<double>(state, rig(false, false), curve()); }
 void stiff(benchmark::State& state) { loop<double>(state, rig(true, false), curve()); }
 void turning(benchmark::State& state) { loop<double>(state, rig(true, true), curve()); }
-void turning_single(benchmark::State& state) { loop<float>(state, rig(true, true), rosin::velocity_curve{rosin::two_exponential_curve<float>{}}); }
+void turning_single(benchmark::State& state) {
+  loop<float>(state, rig(true, true), rosin::velocity_curve{rosin::two_exponential_curve<float>{}});
+}
 void warm(benchmark::State& state) { loop<double>(state, rig(true, true), thermal()); }
 void modes_turning(benchmark::State& state) { modes(state, rig(true, true), curve()); }
 void modes_warm(benchmark::State& state) { modes(state, rig(true, true), thermal()); }

@@ -28,9 +28,7 @@ void process_block() {
 }
 
 /// Two instructions a turn.
-[[gnu::noinline]] void loop(std::uint32_t turns) {
-  asm volatile("1: subs %0, %0, #1\n bne 1b" : "+r"(turns)::"cc");
-}
+[[gnu::noinline]] void loop(std::uint32_t turns) { asm volatile("1: subs %0, %0, #1\n bne 1b" : "+r"(turns)::"cc"); }
 
 void report(const char* what, std::uint32_t number) {
   board::say(what);

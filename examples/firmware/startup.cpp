@@ -27,7 +27,8 @@ struct vector_table {
   entry entries[15];
 };
 [[gnu::section(".vectors"), gnu::used]] const vector_table vectors{
-    &stack_top, {reset, fault, fault, fault, fault, fault, nullptr, nullptr, nullptr, nullptr, fault, fault, nullptr, fault, fault}};
+    &stack_top,
+    {reset, fault, fault, fault, fault, fault, nullptr, nullptr, nullptr, nullptr, fault, fault, nullptr, fault, fault}};
 
 auto& coprocessor_access = *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88);
 

@@ -86,10 +86,8 @@ touch best_with(const levels& l, double beta) {
       J.row(i) = string / all * slope.transpose();
     }
     const double left = off.norm() / std::sqrt(static_cast<double>(rows));
-    if (left < best.off_dB)
-      best = {beta, left, x}, damping = std::max(damping / 4, 1e-6);
-    else
-      damping *= 4;
+    if (left < best.off_dB) best = {beta, left, x}, damping = std::max(damping / 4, 1e-6);
+    else damping *= 4;
     x = best.value;
     const Eigen::Matrix3d normal = J.transpose() * J + damping * Eigen::Matrix3d::Identity();
     x += normal.ldlt().solve(J.transpose() * off);

@@ -11,12 +11,15 @@ namespace {
 
 using layout = rosin::pluck_layout;
 
-constexpr std::array parameter_names{"delay_near_s", "delay_far_s", "stiffness_s2", "inverse_quality", "loss_internal_s", "ln_gain_ratio"};
+constexpr std::array parameter_names{"delay_near_s",    "delay_far_s",     "stiffness_s2",
+                                     "inverse_quality", "loss_internal_s", "ln_gain_ratio"};
 static_assert(parameter_names.size() == rosin::waveform_parameters);
 
 json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
 json with_sd(double value, double sd) { return {{"value", number(value)}, {"sd", number(sd)}}; }
-json with_both(const doubtful& d) { return {{"value", number(d.value)}, {"sd", number(d.sd)}, {"systematic_sd", number(d.systematic_sd)}}; }
+json with_both(const doubtful& d) {
+  return {{"value", number(d.value)}, {"sd", number(d.sd)}, {"systematic_sd", number(d.systematic_sd)}};
+}
 json or_null(const std::optional<doubtful>& d) { return d ? with_both(*d) : json(nullptr); }
 
 template <class Matrix>
@@ -63,16 +66,25 @@ json channel_json(const rig_calibration& c, std::size_t channel) {
 
 /// Modes that were fitted; masses in kg where Z is known.
 json ends_json(const rig_calibration& c) {
-  json out{{"near", json::array()}, {"far", json::array()}, {"fitted", json::array()}, {"parameters", json::array()}, {"covariance", matrix(c.ends.covariance)}};
+  json out{{"near", json::array()},
+           {"far", json::array()},
+           {"fitted", json::array()},
+           {"parameters", json::array()},
+           {"covariance", matrix(c.ends.covariance)}};
   for (std::size_t e = 0; e < 2; ++e)
     if (c.ends.fitted[e]) out["fitted"].push_back(e == 0 ? "near" : "far");
   for (const auto& m : c.ends.modes) {
     const std::string name = m.end == 0 ? "near" : "far";
-    json one{{"frequency_Hz", with_sd(m.mode.frequency_Hz, m.frequency_sd_Hz)}, {"q", with_sd(m.mode.q, m.q_sd)},
-             {"impedance_per_mass_per_s", with_sd(m.mode.per_mass_per_s, m.mode.per_mass_per_s * m.per_mass_relative_sd)}, {"end_uncertain", m.end_uncertain}};
-    if (c.impedance_Ns_m) one["mass_kg"] = with_sd(c.impedance_Ns_m->value / m.mode.per_mass_per_s, c.impedance_Ns_m->value / m.mode.per_mass_per_s * m.per_mass_relative_sd);
+    json one{{"frequency_Hz", with_sd(m.mode.frequency_Hz, m.frequency_sd_Hz)},
+             {"q", with_sd(m.mode.q, m.q_sd)},
+             {"impedance_per_mass_per_s", with_sd(m.mode.per_mass_per_s, m.mode.per_mass_per_s * m.per_mass_relative_sd)},
+             {"end_uncertain", m.end_uncertain}};
+    if (c.impedance_Ns_m)
+      one["mass_kg"] = with_sd(c.impedance_Ns_m->value / m.mode.per_mass_per_s,
+                               c.impedance_Ns_m->value / m.mode.per_mass_per_s * m.per_mass_relative_sd);
     out[name].push_back(one);
-    for (const char* parameter : {"ln_frequency", "ln_q", "ln_impedance_per_mass"}) out["parameters"].push_back(std::string(parameter) + " of " + name + " " + std::to_string(out[name].size()));
+    for (const char* parameter : {"ln_frequency", "ln_q", "ln_impedance_per_mass"})
+      out["parameters"].push_back(std::string(parameter) + " of " + name + " " + std::to_string(out[name].size()));
   }
   return out;
 }
@@ -93,14 +105,21 @@ json takes_json(const rig_calibration& c) {
   for (std::size_t t = 0; t < c.takes.size(); ++t) {
     const double strength = std::exp(c.fit.value[L.at(t, layout::strength)]);
     const auto both = [&](int which) { return with_sd(c.fit.value[L.at(t, which)], c.fit.sd[L.at(t, which)]); };
-    out.push_back({{"name", c.takes[t].name}, {"role", "fitted"}, {"declared_force_N", c.takes[t].strength_N},
+    out.push_back({{"name", c.takes[t].name},
+                   {"role", "fitted"},
+                   {"declared_force_N", c.takes[t].strength_N},
                    {"force_N", with_both({strength, 0, strength * c.fit.sd[L.at(t, layout::strength)]})},
-                   {"release_s", both(layout::release)}, {"offset_near_N", both(layout::offset_near)},
-                   {"offset_far_N", both(layout::offset_far)}, {"residual", number(c.fit.residual_ratio[t])}});
+                   {"release_s", both(layout::release)},
+                   {"offset_near_N", both(layout::offset_near)},
+                   {"offset_far_N", both(layout::offset_far)},
+                   {"residual", number(c.fit.residual_ratio[t])}});
   }
   for (const auto& p : c.predicted)
-    out.push_back({{"name", p.name}, {"role", "held-out"}, {"force_N", with_sd(p.strength_N, std::numeric_limits<double>::quiet_NaN())},
-                   {"release_s", with_sd(p.release_s, std::numeric_limits<double>::quiet_NaN())}, {"residual", number(p.residual_ratio)}});
+    out.push_back({{"name", p.name},
+                   {"role", "held-out"},
+                   {"force_N", with_sd(p.strength_N, std::numeric_limits<double>::quiet_NaN())},
+                   {"release_s", with_sd(p.release_s, std::numeric_limits<double>::quiet_NaN())},
+                   {"residual", number(p.residual_ratio)}});
   return out;
 }
 
@@ -111,8 +130,13 @@ json fit_json(const rig_calibration& c) {
     values.push_back(number(c.fit.value[p]));
     sds.push_back(number(c.fit.sd[p]));
   }
-  return {{"parameters", names}, {"value", values}, {"sd", sds}, {"covariance", matrix(c.fit.covariance)},
-          {"misfit", number(c.fit.misfit)}, {"converged", c.fit.converged}, {"iterations", c.fit.iterations},
+  return {{"parameters", names},
+          {"value", values},
+          {"sd", sds},
+          {"covariance", matrix(c.fit.covariance)},
+          {"misfit", number(c.fit.misfit)},
+          {"converged", c.fit.converged},
+          {"iterations", c.fit.iterations},
           {"band_Hz", {c.fit.limits.pass_Hz, c.fit.limits.stop_Hz}},
           {"periods_used", c.fit.horizon_periods < 1e6 ? json(c.fit.horizon_periods) : json(nullptr)},
           {"unidentified", c.fit.unidentified}};
@@ -138,8 +162,12 @@ fitted_ends ends_of(const json& document) {
     const std::size_t e = names.at(i).get<std::string>().find(" of near ") != std::string::npos ? 0 : 1;
     const json& m = ends.at(e == 0 ? "near" : "far").at(taken[e]++);
     const double per_mass = m.at("impedance_per_mass_per_s").at("value");
-    out.modes.push_back({e, {m.at("frequency_Hz").at("value"), m.at("q").at("value"), per_mass}, m.at("frequency_Hz").at("sd"), m.at("q").at("sd"),
-                         m.at("impedance_per_mass_per_s").at("sd").get<double>() / per_mass, m.at("end_uncertain")});
+    out.modes.push_back({e,
+                         {m.at("frequency_Hz").at("value"), m.at("q").at("value"), per_mass},
+                         m.at("frequency_Hz").at("sd"),
+                         m.at("q").at("sd"),
+                         m.at("impedance_per_mass_per_s").at("sd").get<double>() / per_mass,
+                         m.at("end_uncertain")});
   }
   out.covariance = matrix_of(ends.at("covariance"));
   for (const json& place : document.at("positions"))
@@ -152,15 +180,17 @@ fitted_ends ends_of(const json& document) {
 calibration_set set_of(const rig_calibration& fitted) {
   std::string names;
   for (const auto& t : fitted.takes) names += (names.empty() ? "" : ", ") + t.name;
-  return {"fit of " + names, fitted.rate_Hz(), fitted.fit.value[layout::fundamental], fitted.offset_N, fitted.declared, fitted.at, fitted.ends};
+  return {"fit of " + names, fitted.rate_Hz(), fitted.fit.value[layout::fundamental], fitted.offset_N, fitted.declared,
+          fitted.at,         fitted.ends};
 }
 
 json to_json(const rig_calibration& c, const provenance& from) {
   const auto e = gain_errors_of(c);
-  json out{{"schema", 1}, {"format", "calibration"}, {"kind", "force-plucks"}, {"provenance", from.to_json()}, {"rig", c.title},
-           {"sampling_rate_Hz", c.rate_Hz()}, {"string", string_json(c)}};
+  json out{{"schema", 1},    {"format", "calibration"},         {"kind", "force-plucks"},  {"provenance", from.to_json()},
+           {"rig", c.title}, {"sampling_rate_Hz", c.rate_Hz()}, {"string", string_json(c)}};
   out["channels"] = {{"near", channel_json(c, 0)}, {"far", channel_json(c, 1)}};
-  out["gain_ratio"] = with_sd(c.at.front().gain[0] / c.at.front().gain[1], c.at.front().gain[0] / c.at.front().gain[1] * e.ratio_sd);
+  out["gain_ratio"] =
+      with_sd(c.at.front().gain[0] / c.at.front().gain[1], c.at.front().gain[0] / c.at.front().gain[1] * e.ratio_sd);
   out["common_scale_relative_sd"] = number(e.scale_sd);
   out["impedance_relative_sd"] = number(c.at.front().impedance_relative_sd);
   out["waveform_parameters"] = parameter_names;

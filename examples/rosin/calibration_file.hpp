@@ -11,11 +11,11 @@ namespace tool {
 
 /// What a reconstruction needs of a calibration, whether just fitted or read from a file.
 struct calibration_set {
-  std::string from;                        ///< "3 plucks of rig.toml", or the file's name
-  double rate_Hz = 0;                      ///< of the plucks; noise_N of the calibrations counts up to half of it
+  std::string from;    ///< "3 plucks of rig.toml", or the file's name
+  double rate_Hz = 0;  ///< of the plucks; noise_N of the calibrations counts up to half of it
   double fundamental_Hz = 0;
   std::array<doubtful, 2> offset_N{};
-  std::vector<double> declared;            ///< positions, one for each of `at`
+  std::vector<double> declared;  ///< positions, one for each of `at`
   std::vector<rosin::calibration> at;
   fitted_ends ends;
 };

@@ -35,29 +35,35 @@ struct options {
 struct places {
   fs::path rigs, truth, diagnoses, forces;
   places(const fs::path& root, bool leave_out)
-      : rigs{root / "rigs"}, truth{root / "truth"}, diagnoses{root / (leave_out ? "diagnoses-left-out" : "diagnoses")}, forces{root / "forces"} {}
+      : rigs{root / "rigs"}, truth{root / "truth"}, diagnoses{root / (leave_out ? "diagnoses-left-out" : "diagnoses")},
+        forces{root / "forces"} {}
 };
 
 std::string describe(const options& o) {
-  std::string out = "`rosin challenge --seed " + std::to_string(o.seed) + " --count " + std::to_string(o.count) + " --effects " + std::to_string(o.effects);
+  std::string out = "`rosin challenge --seed " + std::to_string(o.seed) + " --count " + std::to_string(o.count) + " --effects " +
+                    std::to_string(o.effects);
   if (o.strength != 1) out += " --strength " + in_digits(o.strength);
   if (o.noise_dB > 0) out += " --noise-db " + in_digits(o.noise_dB);
   if (o.leave_out) out += " --leave-out";
   return out + (o.effect.empty() ? "`" : " --effect " + o.effect + "`");
 }
 
-/// A rig belongs to the same part on every machine, whatever else is in the folder: by the number that its name ends with, or by its letters.
+/// A rig belongs to the same part on every machine, whatever else is in the folder: by the number that its name ends with, or by
+/// its letters.
 std::size_t part_of(const std::string& name, std::size_t parts) {
   const std::string digits = name.substr(name.find_last_not_of("0123456789") + 1);
   if (!digits.empty() && digits.size() < 19) return static_cast<std::size_t>(std::stoull(digits) % parts);
-  return std::accumulate(name.begin(), name.end(), std::size_t{0}, [](std::size_t sum, char c) { return sum + static_cast<unsigned char>(c); }) % parts;
+  return std::accumulate(name.begin(), name.end(), std::size_t{0},
+                         [](std::size_t sum, char c) { return sum + static_cast<unsigned char>(c); }) %
+         parts;
 }
 
 /// Writes what is not there yet; a rig is complete once its truth is.
 std::optional<rosin::failure> make(const options& given, const places& to, std::size_t shard, std::size_t shards) {
   std::error_code error;
   for (const auto& folder : {to.rigs, to.truth, to.diagnoses})
-    if (!fs::create_directories(folder, error) && error) return rosin::failure{folder.string() + ": cannot be made: " + error.message()};
+    if (!fs::create_directories(folder, error) && error)
+      return rosin::failure{folder.string() + ": cannot be made: " + error.message()};
   progress bar{"hiding", static_cast<std::size_t>(given.count)};
   for (int i = 0; i < given.count; ++i, bar.step()) {
     const std::uint64_t seed = given.seed * 100000 + static_cast<std::uint64_t>(i);
@@ -99,10 +105,13 @@ void diagnose_all(const places& at, bool leave_out, const provenance& from, std:
     if (part_of(name, shards) != shard || fs::exists(file)) continue;
     const auto start = std::chrono::steady_clock::now();
     auto own = from;
-    json out{{"verdict", "failed"}, {"missing", json::array()}, {"fit", {{"metric", ""}, {"after", nullptr}, {"noise_floor", 0}}}};
+    json out{
+        {"verdict", "failed"}, {"missing", json::array()}, {"fit", {{"metric", ""}, {"after", nullptr}, {"noise_floor", 0}}}};
     const auto rig = open_rig(rigs[i].string(), own);
     if (!rig) out["error"] = rig.error();
-    else if (const auto found = diagnose(rig->rig, own, leave_out ? hidden_in(at.truth / file.filename()) : std::vector<std::string>{})) out = to_json(*found, own);
+    else if (const auto found =
+                 diagnose(rig->rig, own, leave_out ? hidden_in(at.truth / file.filename()) : std::vector<std::string>{}))
+      out = to_json(*found, own);
     else out["error"] = found.error();
     if (out.contains("error")) std::cerr << "rosin: " << rigs[i].string() << ": " << out["error"].get<std::string>() << '\n';
     out["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -142,19 +151,25 @@ std::vector<rig_score> score_all(const places& at) {
 
 exit_code run(const options& given, const provenance& from) {
   std::size_t shard = 0, shards = 1;
-  if (char slash = 0; !(std::istringstream{given.shard} >> shard >> slash >> shards) || slash != '/' || shard == 0 || shard > shards)
+  if (char slash = 0;
+      !(std::istringstream{given.shard} >> shard >> slash >> shards) || slash != '/' || shard == 0 || shard > shards)
     return fail("--shard " + given.shard + ": K/N with K from 1 to N is needed", given.json);
   --shard;
-  const auto knows = [&](const std::vector<std::string>& names) { return std::find(names.begin(), names.end(), given.effect) != names.end(); };
-  if (!given.effect.empty() && !knows(hideable()) && !knows(hideable_on_request())) return fail("--effect " + given.effect + ": cannot be hidden", given.json);
+  const auto knows = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), given.effect) != names.end();
+  };
+  if (!given.effect.empty() && !knows(hideable()) && !knows(hideable_on_request()))
+    return fail("--effect " + given.effect + ": cannot be hidden", given.json);
   const places at{given.out, given.leave_out};
   if (const auto why = make(given, at, shard, shards)) return fail(why->message, given.json);
   if (given.only_make) return exit_code::ok;
   diagnose_all(at, given.leave_out, from, shard, shards);
   if (given.forces) reconstruct_all(at, from, shard, shards);
   const auto scores = score_all(at);
-  const auto page = given.leave_out ? left_out_to_markdown(scores, describe(given)) : to_markdown(scores, describe(given)) + forces_to_markdown(scores);
-  if (const auto why = rosin::write_file((fs::path{given.out} / (given.leave_out ? "left-out.md" : "challenge.md")).string(), rosin::overwrite::allow, [&](std::ostream& o) { o << page; }))
+  const auto page = given.leave_out ? left_out_to_markdown(scores, describe(given))
+                                    : to_markdown(scores, describe(given)) + forces_to_markdown(scores);
+  if (const auto why = rosin::write_file((fs::path{given.out} / (given.leave_out ? "left-out.md" : "challenge.md")).string(),
+                                         rosin::overwrite::allow, [&](std::ostream& o) { o << page; }))
     return fail(why->message, given.json);
   if (given.json) print(to_json(scores));
   else std::cout << page;
@@ -166,21 +181,37 @@ exit_code run(const options& given, const provenance& from) {
 void add_challenge(CLI::App& app, exit_code& result) {
   auto given = std::make_shared<options>();
   CLI::App* command = app.add_subcommand("challenge", "Hide physics in simulated rigs, diagnose them blind, and score");
-  command->add_option("--out", given->out, "Folder: rigs/, truth/, diagnoses/ and the page challenge.md; what is there is used")->required()->type_name("FOLDER");
+  command->add_option("--out", given->out, "Folder: rigs/, truth/, diagnoses/ and the page challenge.md; what is there is used")
+      ->required()
+      ->type_name("FOLDER");
   command->add_option("--seed", given->seed, "Of the first rig")->check(CLI::NonNegativeNumber)->capture_default_str();
-  command->add_option("--count", given->count, "Rigs to make; 0: only what the folder holds")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command->add_option("--count", given->count, "Rigs to make; 0: only what the folder holds")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_option("--effects", given->effects, "Hidden in each rig")->check(CLI::Range(0, 2))->capture_default_str();
-  command->add_option("--effect", given->effect, "This one and no other; besides those that are drawn: " + CLI::detail::join(hideable_on_request(), ", "))->type_name("NAME");
-  command->add_option("--strength", given->strength, "1: as in a laboratory in which one thing went wrong")->check(CLI::Range(0.001, 10.0))->capture_default_str();
-  command->add_option("--noise-db", given->noise_dB, "Peak of the first pluck over the noise; 0: drawn, 0.3 to 0.5 mN")->check(CLI::Range(0.0, 120.0))->capture_default_str();
+  command
+      ->add_option("--effect", given->effect,
+                   "This one and no other; besides those that are drawn: " + CLI::detail::join(hideable_on_request(), ", "))
+      ->type_name("NAME");
+  command->add_option("--strength", given->strength, "1: as in a laboratory in which one thing went wrong")
+      ->check(CLI::Range(0.001, 10.0))
+      ->capture_default_str();
+  command->add_option("--noise-db", given->noise_dB, "Peak of the first pluck over the noise; 0: drawn, 0.3 to 0.5 mN")
+      ->check(CLI::Range(0.0, 120.0))
+      ->capture_default_str();
   command->add_option("--shard", given->shard, "The K-th of N parts: every N-th rig")->type_name("K/N")->capture_default_str();
-  command->add_flag("--leave-out", given->leave_out, "Diagnosed by a catalogue that does not know what is hidden: it should say so (left-out.md)");
+  command->add_flag("--leave-out", given->leave_out,
+                    "Diagnosed by a catalogue that does not know what is hidden: it should say so (left-out.md)");
   command->add_flag("--only-make", given->only_make, "Make the rigs, diagnose nothing");
-  command->add_flag("--forces", given->forces, "Keep the strokes' true forces, and reconstruct them as declared and as diagnosed (forces/)")->excludes("--leave-out");
+  command
+      ->add_flag("--forces", given->forces,
+                 "Keep the strokes' true forces, and reconstruct them as declared and as diagnosed (forces/)")
+      ->excludes("--leave-out");
   add_json_option(*command, given->json);
   command->footer(
       "The rigs are stepped mode by mode, with beads, fingers, supports and the contact solved for in every step; nothing of\n"
-      "that is shared with the closed forms that a diagnosis fits. A folder rigs/ with truth/NAME.json beside it is scored likewise.");
+      "that is shared with the closed forms that a diagnosis fits. A folder rigs/ with truth/NAME.json beside it is scored "
+      "likewise.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

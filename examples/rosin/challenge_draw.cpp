@@ -46,7 +46,12 @@ hidden_effect on_the_string(const std::string& name, challenge_rig& r, source& s
   }
   const std::size_t e = side(s);  // support-resonance
   r.burden.supports[e] = {evenly_in_log(s, 2e-3, 12e-3) / k, evenly_in_log(s, 1200, 6000), s.uniform(8, 35)};
-  return {name, name_of_side(e), "", {{"frequency_Hz", r.burden.supports[e].frequency_Hz}, {"q", r.burden.supports[e].quality}, {"mass_kg", r.burden.supports[e].mass_kg}}};
+  return {name,
+          name_of_side(e),
+          "",
+          {{"frequency_Hz", r.burden.supports[e].frequency_Hz},
+           {"q", r.burden.supports[e].quality},
+           {"mass_kg", r.burden.supports[e].mass_kg}}};
 }
 
 hidden_effect in_the_sensors(const std::string& name, challenge_rig& r, source& s, double k) {
@@ -67,7 +72,8 @@ hidden_effect in_the_sensors(const std::string& name, challenge_rig& r, source& 
     const double frequency = s.uniform() < 0.5 ? 50 : 60, amplitude = k * evenly_in_log(s, 4e-3, 2e-2);
     for (std::size_t c = 0; c < 2; ++c) {
       const double share = c == 0 ? 1 : s.uniform(0.3, 0.9);
-      for (int n = 1; n <= 3; ++n) r.converters[c].hum.push_back({n * frequency, share * amplitude / (n * n), s.uniform(0, 6.28)});
+      for (int n = 1; n <= 3; ++n)
+        r.converters[c].hum.push_back({n * frequency, share * amplitude / (n * n), s.uniform(0, 6.28)});
     }
     return {name, "", "", {{"frequency_Hz", frequency}, {"amplitude_N", amplitude}}};
   }
@@ -88,7 +94,12 @@ hidden_effect under_the_bow(const std::string& name, challenge_rig& r, source& s
   }
   if (name == "torsion") {
     r.declares_torsion = false;
-    return {name, "", "", {{"speed_ratio", r.base.rig.torsion.speed_ratio}, {"impedance_ratio", r.base.rig.torsion.impedance_ratio}, {"q", r.base.rig.torsion.quality}}};
+    return {name,
+            "",
+            "",
+            {{"speed_ratio", r.base.rig.torsion.speed_ratio},
+             {"impedance_ratio", r.base.rig.torsion.impedance_ratio},
+             {"q", r.base.rig.torsion.quality}}};
   }
   if (name == "tension-drift") {
     const double relative = k * with_sign(s, evenly_in_log(s, 4e-3, 2e-2));
@@ -111,8 +122,10 @@ hidden_effect under_the_bow(const std::string& name, challenge_rig& r, source& s
     return {name, "", "", {{"frequency_Hz", r.ripple_Hz}, {"relative", relative}}};
   }
   if (name == "thermal-friction") {
-    const rosin::contact_heat_parameters<double> heat{.layer_m = s.uniform(1e-6, 5e-6), .area_per_newton_m2 = s.uniform(0.7e-7, 1.5e-7)};
-    const auto strength = rosin::design_yield_curve(r.base.steady_friction, heat.without_string(), r.base.strokes[0].normal_force_N);
+    const rosin::contact_heat_parameters<double> heat{.layer_m = s.uniform(1e-6, 5e-6),
+                                                      .area_per_newton_m2 = s.uniform(0.7e-7, 1.5e-7)};
+    const auto strength =
+        rosin::design_yield_curve(r.base.steady_friction, heat.without_string(), r.base.strokes[0].normal_force_N);
     if (strength) r.base.law = rosin::thermal_plastic<double>{*strength, heat};
     return {name, "", "", {}};
   }
@@ -133,17 +146,36 @@ void hide(const std::string& name, challenge_rig& r, source& s, double k) {
   if (auto further = hidden_on_request(name, r, s, k)) return r.effects.push_back(*std::move(further));
   const auto& all = hideable();
   const auto index = std::find(all.begin(), all.end(), name) - all.begin();
-  r.effects.push_back(index < 7 ? on_the_string(name, r, s, k) : index < 13 ? in_the_sensors(name, r, s, k) : under_the_bow(name, r, s, k));
+  r.effects.push_back(index < 7    ? on_the_string(name, r, s, k)
+                      : index < 13 ? in_the_sensors(name, r, s, k)
+                                   : under_the_bow(name, r, s, k));
 }
 
 }  // namespace
 
 const std::vector<std::string>& hideable() {
-  static const std::vector<std::string> names{
-      "bending-stiffness", "frequency-dependent-loss", "tension-modulation", "second-polarization", "point-mass", "point-damper", "support-resonance",
-      "ac-coupling", "channel-skew", "channel-crosstalk", "mains-hum", "sensor-nonlinearity", "sensor-resonance",
-      "slow-release", "torsion", "tension-drift", "rod-resonance", "finite-contact-width", "speed-ripple", "normal-force-ripple", "thermal-friction",
-      "elasto-plastic-friction"};
+  static const std::vector<std::string> names{"bending-stiffness",
+                                              "frequency-dependent-loss",
+                                              "tension-modulation",
+                                              "second-polarization",
+                                              "point-mass",
+                                              "point-damper",
+                                              "support-resonance",
+                                              "ac-coupling",
+                                              "channel-skew",
+                                              "channel-crosstalk",
+                                              "mains-hum",
+                                              "sensor-nonlinearity",
+                                              "sensor-resonance",
+                                              "slow-release",
+                                              "torsion",
+                                              "tension-drift",
+                                              "rod-resonance",
+                                              "finite-contact-width",
+                                              "speed-ripple",
+                                              "normal-force-ripple",
+                                              "thermal-friction",
+                                              "elasto-plastic-friction"};
   return names;
 }
 
@@ -163,7 +195,9 @@ challenge_rig draw_challenge(const challenge_choice& choice) {
     const auto name = any();
     const auto ripple = [](const std::string& n) { return n.find("ripple") != std::string::npos; };
     const auto law = [](const std::string& n) { return n == "thermal-friction" || n == "elasto-plastic-friction"; };
-    if (std::none_of(names.begin(), names.end(), [&](const auto& n) { return n == name || (ripple(n) && ripple(name)) || (law(n) && law(name)); })) names.push_back(name);
+    if (std::none_of(names.begin(), names.end(),
+                     [&](const auto& n) { return n == name || (ripple(n) && ripple(name)) || (law(n) && law(name)); }))
+      names.push_back(name);
   }
   if (choice.effects == 0) names.clear();
   for (const auto& name : names) hide(name, r, s, choice.strength);
@@ -171,7 +205,8 @@ challenge_rig draw_challenge(const challenge_choice& choice) {
   if (choice.noise_dB > 0) r.base.noise_N = peak * std::pow(10, -choice.noise_dB / 20);
   for (std::size_t c = 0; c < 2; ++c) {
     r.converters[c].gain = r.base.gain[c], r.converters[c].noise_N = r.base.noise_N;
-    for (auto& line : r.converters[c].hum) line.amplitude_N *= r.base.gain[c];  // a force that is not there, as the sensor sees it
+    for (auto& line : r.converters[c].hum)
+      line.amplitude_N *= r.base.gain[c];  // a force that is not there, as the sensor sees it
   }
   return r;
 }
@@ -187,7 +222,12 @@ json truth_of(const challenge_rig& r) {
   const auto& t = r.base.rig.string;
   return {{"name", r.name},
           {"effects", effects},
-          {"string", {{"length_m", t.length_m}, {"tension_N", t.tension_N}, {"fundamental_Hz", t.fundamental_Hz}, {"bending_stiffness_Nm2", t.bending_stiffness_Nm2}, {"q", t.loss.quality}}},
+          {"string",
+           {{"length_m", t.length_m},
+            {"tension_N", t.tension_N},
+            {"fundamental_Hz", t.fundamental_Hz},
+            {"bending_stiffness_Nm2", t.bending_stiffness_Nm2},
+            {"q", t.loss.quality}}},
           {"position", r.base.position},
           {"gain", r.base.gain},
           {"noise_N", r.base.noise_N},

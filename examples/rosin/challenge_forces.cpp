@@ -15,12 +15,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of one stroke; its reason if it cannot be reconstructed.
-rosin::outcome<double> error_of(const rosin::rig& rig, const rosin::take& take, const checked_take& read, const calibration_set& calibration, const take_options& how,
-                                const rosin::table& truth) {
+rosin::outcome<double> error_of(const rosin::rig& rig, const rosin::take& take, const checked_take& read,
+                                const calibration_set& calibration, const take_options& how, const rosin::table& truth) {
   const auto made = reconstruct_take(rig, take, read, calibration, how);
   if (!made) return rosin::failure{made.error()};
   const auto* force = truth.find("force_N");
-  if (force == nullptr || force->values.size() != made->force_N.size()) return rosin::failure{take.name + ": the true force is of another length"};
+  if (force == nullptr || force->values.size() != made->force_N.size())
+    return rosin::failure{take.name + ": the true force is of another length"};
   const auto c = compare_columns("force_N", made->force_N, force->values, made->rate_Hz, compared_band(made->rate_Hz));
   if (!(c.rms_truth > 0)) return rosin::failure{take.name + ": too little of it is known"};
   return c.delta_scaled;
@@ -50,7 +51,8 @@ rosin::outcome<both_ways> prepare(const rosin::rig& rig, const std::string& diag
   return out;
 }
 
-rosin::outcome<json> errors_of(const rosin::rig& rig, const rosin::take& take, const both_ways& how, const fs::path& true_file, provenance& from) {
+rosin::outcome<json> errors_of(const rosin::rig& rig, const rosin::take& take, const both_ways& how, const fs::path& true_file,
+                               provenance& from) {
   const auto known = rosin::read_csv(true_file.string());
   if (!known) return rosin::failure{known.error()};
   const auto read = read_sound_take(rig, take, from);
@@ -76,7 +78,8 @@ json force_errors(const fs::path& rig, const fs::path& truth, const std::string&
     const auto file = true_forces(truth, rig.filename().string(), take.name);
     if (take.kind != rosin::take_kind::bow || !fs::exists(file)) continue;
     if (!how) how = prepare(folder->rig, diagnosis, from);
-    const auto errors = *how ? errors_of(folder->rig, take, **how, file, from) : rosin::outcome<json>{rosin::failure{how->error()}};
+    const auto errors =
+        *how ? errors_of(folder->rig, take, **how, file, from) : rosin::outcome<json>{rosin::failure{how->error()}};
     out[take.name] = errors ? *errors : json{{"error", errors.error()}};
   }
   return out;

@@ -12,8 +12,10 @@
 
 namespace tool {
 
-/// For each stroke of which `truth` holds the true force: {"bow-1": {"before": Delta, "after": Delta}}, Eq. (12) up to 20 kHz after one
-/// common scale, or {"error": why}. As declared is what `rosin reconstruct` does by itself, with its fine tuning. Empty where no truth is there.
-[[nodiscard]] json force_errors(const std::filesystem::path& rig, const std::filesystem::path& truth, const std::string& diagnosis, provenance from);
+/// For each stroke of which `truth` holds the true force: {"bow-1": {"before": Delta, "after": Delta}}, Eq. (12) up to 20 kHz
+/// after one common scale, or {"error": why}. As declared is what `rosin reconstruct` does by itself, with its fine tuning. Empty
+/// where no truth is there.
+[[nodiscard]] json force_errors(const std::filesystem::path& rig, const std::filesystem::path& truth,
+                                const std::string& diagnosis, provenance from);
 
 }  // namespace tool

@@ -17,14 +17,18 @@ using source = rosin::gaussian_source;
 hidden_effect another_string(challenge_rig& r, source& s, double k) {
   constexpr double highest_Hz = 60e3;
   const std::size_t e = side(s);
-  const double pitch = evenly_in_log(s, 0.35, 0.9) * r.base.rig.string.fundamental_Hz, q = evenly_in_log(s, 500, 1500), stiff = evenly_in_log(s, 1e-5, 6e-5), per_mass = k * evenly_in_log(s, 0.02, 0.06);
-  for (int n = 1; n * pitch < highest_Hz; ++n) r.burden.ends[e].modes.push_back({n * pitch * std::sqrt((1 + stiff * n * n) / (1 + stiff)), q, per_mass * n * n});
+  const double pitch = evenly_in_log(s, 0.35, 0.9) * r.base.rig.string.fundamental_Hz, q = evenly_in_log(s, 500, 1500),
+               stiff = evenly_in_log(s, 1e-5, 6e-5), per_mass = k * evenly_in_log(s, 0.02, 0.06);
+  for (int n = 1; n * pitch < highest_Hz; ++n)
+    r.burden.ends[e].modes.push_back({n * pitch * std::sqrt((1 + stiff * n * n) / (1 + stiff)), q, per_mass * n * n});
   return {{}, name_of_side(e), "", {{"frequency_Hz", pitch}, {"q", q}}};
 }
 
 /// Beside the string, where it swings over to: only the strongest pluck gets there.
 hidden_effect beside_the_string(challenge_rig& r, source& s, double k) {
-  const double x = place(s, r), p = r.base.position, per_newton = std::min(p, 1 - x) * (1 - std::max(p, 1 - x)) * r.base.rig.string.length_m / r.base.rig.string.tension_N;
+  const double x = place(s, r), p = r.base.position,
+               per_newton =
+                   std::min(p, 1 - x) * (1 - std::max(p, 1 - x)) * r.base.rig.string.length_m / r.base.rig.string.tension_N;
   std::array<double, 3> force{};
   for (std::size_t i = 0; i < force.size(); ++i) force[i] = r.base.plucks[i].force_N;
   std::sort(force.begin(), force.end());
@@ -46,7 +50,8 @@ hidden_effect held_against_turning(challenge_rig& r, source& s, double k) {
 /// An end on something soft that swallows what comes: rubber under the bridge.
 hidden_effect damped_end(challenge_rig& r, source& s, double k) {
   const std::size_t e = side(s);
-  const double z = r.base.rig.string.impedance_Ns_m(), conductance = k * evenly_in_log(s, 3e-4, 1e-2), corner = evenly_in_log(s, 5, 60);
+  const double z = r.base.rig.string.impedance_Ns_m(), conductance = k * evenly_in_log(s, 3e-4, 1e-2),
+               corner = evenly_in_log(s, 5, 60);
   r.burden.ends[e].modes.push_back(rosin::overdamped_mode(conductance, corner, 1e6));
   return {{}, name_of_side(e), "", {{"resistance_Ns_m", z / conductance}, {"corner_Hz", corner}}};
 }
@@ -54,8 +59,14 @@ hidden_effect damped_end(challenge_rig& r, source& s, double k) {
 /// An end that is heavy and softly held: it moves as a mass does at all of the string's partials.
 hidden_effect heavy_end(challenge_rig& r, source& s, double k) {
   const std::size_t e = side(s);
-  r.burden.supports[e] = {evenly_in_log(s, 0.02, 0.2) / k, evenly_in_log(s, 40, 0.5 * r.base.rig.string.fundamental_Hz), s.uniform(8, 35)};
-  return {"support-resonance", name_of_side(e), "", {{"frequency_Hz", r.burden.supports[e].frequency_Hz}, {"q", r.burden.supports[e].quality}, {"mass_kg", r.burden.supports[e].mass_kg}}};
+  r.burden.supports[e] = {evenly_in_log(s, 0.02, 0.2) / k, evenly_in_log(s, 40, 0.5 * r.base.rig.string.fundamental_Hz),
+                          s.uniform(8, 35)};
+  return {"support-resonance",
+          name_of_side(e),
+          "",
+          {{"frequency_Hz", r.burden.supports[e].frequency_Hz},
+           {"q", r.burden.supports[e].quality},
+           {"mass_kg", r.burden.supports[e].mass_kg}}};
 }
 
 /// Of the air's boundary layer.
@@ -91,7 +102,8 @@ hidden_effect two_clocks(challenge_rig& r, source& s, double k) {
 }
 
 hidden_effect cut_out(challenge_rig& r, source& s, double) {
-  r.lost = {std::min<std::size_t>(2, static_cast<std::size_t>(3 * s.uniform())), static_cast<std::size_t>(128000 * s.uniform(0.03, 0.08)), static_cast<std::size_t>(evenly_in_log(s, 3, 60))};
+  r.lost = {std::min<std::size_t>(2, static_cast<std::size_t>(3 * s.uniform())),
+            static_cast<std::size_t>(128000 * s.uniform(0.03, 0.08)), static_cast<std::size_t>(evenly_in_log(s, 3, 60))};
   return {{}, "", "", {{"samples", static_cast<double>(r.lost.count)}, {"time_s", static_cast<double>(r.lost.first) / 128000}}};
 }
 
@@ -103,8 +115,18 @@ hidden_effect creeping(challenge_rig& r, source& s, double k) {
 
 const std::map<std::string, std::function<hidden_effect(challenge_rig&, source&, double)>>& requests() {
   static const std::map<std::string, std::function<hidden_effect(challenge_rig&, source&, double)>> all{
-      {"air-loss", in_air},          {"clamped-end", held_against_turning}, {"clock-drift", two_clocks},  {"creep", creeping},          {"dropouts", cut_out}, {"finite-pluck-width", wide_wire},
-      {"massive-end", heavy_end}, {"phantom-partials", felt_tension}, {"pluck-position", plucked_elsewhere}, {"rattle", beside_the_string}, {"resistive-end", damped_end}, {"sympathetic-string", another_string}};
+      {"air-loss", in_air},
+      {"clamped-end", held_against_turning},
+      {"clock-drift", two_clocks},
+      {"creep", creeping},
+      {"dropouts", cut_out},
+      {"finite-pluck-width", wide_wire},
+      {"massive-end", heavy_end},
+      {"phantom-partials", felt_tension},
+      {"pluck-position", plucked_elsewhere},
+      {"rattle", beside_the_string},
+      {"resistive-end", damped_end},
+      {"sympathetic-string", another_string}};
   return all;
 }
 

@@ -52,13 +52,15 @@ struct challenge_rig {
 
 struct challenge_choice {
   std::uint64_t seed = 1;
-  int effects = 1;           ///< 0 to 2
-  double strength = 1;       ///< 1: as strong as in a bad laboratory
-  double noise_dB = 0;       ///< 0: drawn; else peak of the loudest pluck over the noise's standard deviation
-  std::string only;          ///< this effect and no other
+  int effects = 1;      ///< 0 to 2
+  double strength = 1;  ///< 1: as strong as in a bad laboratory
+  double noise_dB = 0;  ///< 0: drawn; else peak of the loudest pluck over the noise's standard deviation
+  std::string only;     ///< this effect and no other
 };
 
-inline double evenly_in_log(rosin::gaussian_source& s, double low, double high) { return low * std::pow(high / low, s.uniform()); }
+inline double evenly_in_log(rosin::gaussian_source& s, double low, double high) {
+  return low * std::pow(high / low, s.uniform());
+}
 inline double with_sign(rosin::gaussian_source& s, double x) { return s.uniform() < 0.5 ? -x : x; }
 inline std::size_t side(rosin::gaussian_source& s) { return s.uniform() < 0.5 ? 0 : 1; }
 inline const char* name_of_side(std::size_t c) { return c == 0 ? "near" : "far"; }
@@ -76,12 +78,16 @@ inline double place(rosin::gaussian_source& s, const challenge_rig& r) {
 /// And these, where they are asked for.
 [[nodiscard]] const std::vector<std::string>& hideable_on_request();
 /// One of these, hidden; nothing if it is none.
-[[nodiscard]] std::optional<hidden_effect> hidden_on_request(const std::string& name, challenge_rig& rig, rosin::gaussian_source& source, double strength);
+[[nodiscard]] std::optional<hidden_effect> hidden_on_request(const std::string& name, challenge_rig& rig,
+                                                             rosin::gaussian_source& source, double strength);
 [[nodiscard]] challenge_rig draw_challenge(const challenge_choice& choice);
-/// Plays all takes and writes folder/rig.toml with its recordings, and the strokes' true_forces unless `truth` is empty; a reason if that cannot be done.
-[[nodiscard]] std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const std::filesystem::path& folder, bool force, const std::filesystem::path& truth);
+/// Plays all takes and writes folder/rig.toml with its recordings, and the strokes' true_forces unless `truth` is empty; a reason
+/// if that cannot be done.
+[[nodiscard]] std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const std::filesystem::path& folder,
+                                                            bool force, const std::filesystem::path& truth);
 /// Where force and velocity under the bow of one stroke are: a table as `rosin compare` reads it.
-[[nodiscard]] std::filesystem::path true_forces(const std::filesystem::path& truth, const std::string& rig, const std::string& take);
+[[nodiscard]] std::filesystem::path true_forces(const std::filesystem::path& truth, const std::string& rig,
+                                                const std::string& take);
 [[nodiscard]] json truth_of(const challenge_rig& rig);
 
 }  // namespace tool

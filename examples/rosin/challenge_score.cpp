@@ -47,8 +47,10 @@ void score_parameters(const std::string& effect, const json& truth, const json& 
 std::string share(std::size_t right, std::size_t all) {
   if (all == 0) return "-";
   const double k = static_cast<double>(right), n = static_cast<double>(all);
-  const double low = right == 0 ? 0 : boost::math::ibeta_inv(k, n - k + 1, 0.025), high = right == all ? 1 : boost::math::ibeta_inv(k + 1, n - k, 0.975);
-  return std::to_string(right) + "/" + std::to_string(all) + " (" + in_digits(100 * low, "%.0f") + "-" + in_digits(100 * high, "%.0f") + " %)";
+  const double low = right == 0 ? 0 : boost::math::ibeta_inv(k, n - k + 1, 0.025),
+               high = right == all ? 1 : boost::math::ibeta_inv(k + 1, n - k, 0.975);
+  return std::to_string(right) + "/" + std::to_string(all) + " (" + in_digits(100 * low, "%.0f") + "-" +
+         in_digits(100 * high, "%.0f") + " %)";
 }
 
 double median(std::vector<double> x) {
@@ -80,9 +82,11 @@ rig_score score(const json& truth, const json& diagnosis) {
     score_parameters(e.at("effect"), e, *said, s);
   }
   s.all_found = found == s.hidden.size();
-  s.right = s.all_found && missing.size() == s.hidden.size() && (s.hidden.empty() ? s.verdict == "no-mismatch" : s.verdict == "explained");
+  s.right = s.all_found && missing.size() == s.hidden.size() &&
+            (s.hidden.empty() ? s.verdict == "no-mismatch" : s.verdict == "explained");
   const json& fit = diagnosis.at("fit");
-  if (fit.at("metric") == "pluck-residual" && fit.at("after").is_number() && fit.at("noise_floor").is_number() && fit.at("noise_floor") > 0)
+  if (fit.at("metric") == "pluck-residual" && fit.at("after").is_number() && fit.at("noise_floor").is_number() &&
+      fit.at("noise_floor") > 0)
     s.held_out_over_floor = fit.at("after").get<double>() / fit.at("noise_floor").get<double>();
   return s;
 }
@@ -97,9 +101,21 @@ json to_json(const std::vector<rig_score>& scores) {
   json out = json::array();
   for (const auto& s : scores) {
     json parameters = json::array();
-    for (const auto& p : s.parameters) parameters.push_back({{"effect", p.effect}, {"name", p.name}, {"error", p.error}, {"covered", p.has_interval ? json(p.covered) : json(nullptr)}});
-    out.push_back({{"name", s.name}, {"hidden", s.hidden}, {"named", s.named}, {"verdict", s.verdict}, {"right", s.right}, {"place_right", s.has_place ? json(s.place_right) : json(nullptr)},
-                   {"parameters", parameters}, {"forces", s.forces}, {"held_out_over_floor", s.held_out_over_floor}, {"seconds", s.seconds}});
+    for (const auto& p : s.parameters)
+      parameters.push_back({{"effect", p.effect},
+                            {"name", p.name},
+                            {"error", p.error},
+                            {"covered", p.has_interval ? json(p.covered) : json(nullptr)}});
+    out.push_back({{"name", s.name},
+                   {"hidden", s.hidden},
+                   {"named", s.named},
+                   {"verdict", s.verdict},
+                   {"right", s.right},
+                   {"place_right", s.has_place ? json(s.place_right) : json(nullptr)},
+                   {"parameters", parameters},
+                   {"forces", s.forces},
+                   {"held_out_over_floor", s.held_out_over_floor},
+                   {"seconds", s.seconds}});
   }
   return out;
 }
@@ -111,8 +127,10 @@ std::string left_out_to_markdown(const std::vector<rig_score>& scores, const std
     by[joined(s.hidden, "nothing")].push_back(&s);
     owned_up += s.verdict == "unexplained", misled += s.verdict == "explained";
   }
-  std::string out = how + "\n\nCalled unexplained: " + share(owned_up, scores.size()) + ". Explained by something else: " + share(misled, scores.size()) +
-                    ".\n\n| hidden and not in the catalogue | unexplained | seen as no mismatch | explained instead by |\n|---|---|---|---|\n";
+  std::string out =
+      how + "\n\nCalled unexplained: " + share(owned_up, scores.size()) +
+      ". Explained by something else: " + share(misled, scores.size()) +
+      ".\n\n| hidden and not in the catalogue | unexplained | seen as no mismatch | explained instead by |\n|---|---|---|---|\n";
   for (const auto& [hidden, rigs] : by) {
     std::size_t unexplained = 0, unseen = 0;
     std::map<std::string, int> instead;
@@ -121,7 +139,8 @@ std::string left_out_to_markdown(const std::vector<rig_score>& scores, const std
       if (s->verdict == "explained") ++instead[joined(s->named, "nothing")];
     }
     std::string wrong;
-    for (const auto& [name, count] : instead) wrong += (wrong.empty() ? "" : ", ") + (count > 1 ? std::to_string(count) + " x " : std::string{}) + name;
+    for (const auto& [name, count] : instead)
+      wrong += (wrong.empty() ? "" : ", ") + (count > 1 ? std::to_string(count) + " x " : std::string{}) + name;
     out += "| " + hidden + " | " + share(unexplained, rigs.size()) + " | " + std::to_string(unseen) + " | " + wrong + " |\n";
   }
   return out;
@@ -130,16 +149,20 @@ std::string left_out_to_markdown(const std::vector<rig_score>& scores, const std
 std::string forces_to_markdown(const std::vector<rig_score>& scores) {
   std::map<std::string, std::vector<std::pair<double, double>>> by;
   for (const auto& s : scores)
-    if (!s.forces.empty()) by[joined(s.hidden, "nothing")].insert(by[joined(s.hidden, "nothing")].end(), s.forces.begin(), s.forces.end());
+    if (!s.forces.empty())
+      by[joined(s.hidden, "nothing")].insert(by[joined(s.hidden, "nothing")].end(), s.forces.begin(), s.forces.end());
   if (by.empty()) return {};
-  std::string out = "\nError of the reconstructed force against the true one (Delta of Eq. (12) up to 20 kHz, after one common scale):\n\n"
-                    "| hidden | strokes | as declared, median | as diagnosed, median | worst | larger than as declared by a tenth |\n|---|---|---|---|---|---|\n";
+  std::string out =
+      "\nError of the reconstructed force against the true one (Delta of Eq. (12) up to 20 kHz, after one common scale):\n\n"
+      "| hidden | strokes | as declared, median | as diagnosed, median | worst | larger than as declared by a tenth "
+      "|\n|---|---|---|---|---|---|\n";
   for (const auto& [hidden, strokes] : by) {
     std::vector<double> before, after;
     std::size_t worse = 0;
     for (const auto& [b, a] : strokes) before.push_back(b), after.push_back(a), worse += a > 1.1 * b;
-    out += "| " + hidden + " | " + std::to_string(strokes.size()) + " | " + in_digits(median(before), "%.2g") + " | " + in_digits(median(after), "%.2g") + " | " +
-           in_digits(*std::max_element(after.begin(), after.end()), "%.2g") + " | " + std::to_string(worse) + " |\n";
+    out += "| " + hidden + " | " + std::to_string(strokes.size()) + " | " + in_digits(median(before), "%.2g") + " | " +
+           in_digits(median(after), "%.2g") + " | " + in_digits(*std::max_element(after.begin(), after.end()), "%.2g") + " | " +
+           std::to_string(worse) + " |\n";
   }
   return out;
 }
@@ -155,9 +178,13 @@ std::string to_markdown(const std::vector<rig_score>& scores, const std::string&
     if (s.seconds > 0) seconds.push_back(s.seconds);
     if (s.held_out_over_floor > 0 && s.verdict == "explained") floors.push_back(s.held_out_over_floor);
   }
-  std::string out = how + "\n\nNamed right: " + share(right, scores.size()) + ". End, channel and position right where the effect was named: " + share(placed, with_place) +
-                    ". 95 % intervals that cover: " + share(covered, intervals) + ". Held-out residual over the noise floor, median: " + (floors.empty() ? "-" : in_digits(median(floors))) +
-                    ". Seconds a rig, median: " + in_digits(median(seconds)) + ".\n\n| hidden | named right | placed right | errors, median | intervals that cover | said instead |\n|---|---|---|---|---|---|\n";
+  std::string out = how + "\n\nNamed right: " + share(right, scores.size()) +
+                    ". End, channel and position right where the effect was named: " + share(placed, with_place) +
+                    ". 95 % intervals that cover: " + share(covered, intervals) +
+                    ". Held-out residual over the noise floor, median: " + (floors.empty() ? "-" : in_digits(median(floors))) +
+                    ". Seconds a rig, median: " + in_digits(median(seconds)) +
+                    ".\n\n| hidden | named right | placed right | errors, median | intervals that cover | said instead "
+                    "|\n|---|---|---|---|---|---|\n";
   for (const auto& [hidden, rigs] : by) {
     std::size_t ok = 0, place_ok = 0, places = 0, in = 0, of = 0;
     std::map<std::string, std::vector<double>> errors;
@@ -168,9 +195,13 @@ std::string to_markdown(const std::vector<rig_score>& scores, const std::string&
       if (!s->right) ++instead[joined(s->named, "nothing") + (s->verdict == "unexplained" ? " (unexplained)" : "")];
     }
     std::string wrong, off;
-    for (const auto& [name, count] : instead) wrong += (wrong.empty() ? "" : ", ") + (count > 1 ? std::to_string(count) + " x " : std::string{}) + name;
-    for (const auto& [name, e] : errors) off += (off.empty() ? "" : ", ") + name + " " + (name == "position" ? in_digits(median(e), "%.1e") : in_digits(100 * median(e), "%.2g") + " %");
-    out += "| " + hidden + " | " + share(ok, rigs.size()) + " | " + share(place_ok, places) + " | " + off + " | " + share(in, of) + " | " + wrong + " |\n";
+    for (const auto& [name, count] : instead)
+      wrong += (wrong.empty() ? "" : ", ") + (count > 1 ? std::to_string(count) + " x " : std::string{}) + name;
+    for (const auto& [name, e] : errors)
+      off += (off.empty() ? "" : ", ") + name + " " +
+             (name == "position" ? in_digits(median(e), "%.1e") : in_digits(100 * median(e), "%.2g") + " %");
+    out += "| " + hidden + " | " + share(ok, rigs.size()) + " | " + share(place_ok, places) + " | " + off + " | " +
+           share(in, of) + " | " + wrong + " |\n";
   }
   return out;
 }

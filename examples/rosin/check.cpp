@@ -20,8 +20,13 @@ struct options {
 };
 
 json to_json(const rosin::channel_check& c) {
-  json out{{"channel", c.channel}, {"unit", c.unit}, {"lowest", c.lowest}, {"highest", c.highest}, {"mean", c.mean},
-           {"rms", c.rms},         {"of_full_scale", c.of_full_scale}};
+  json out{{"channel", c.channel},
+           {"unit", c.unit},
+           {"lowest", c.lowest},
+           {"highest", c.highest},
+           {"mean", c.mean},
+           {"rms", c.rms},
+           {"of_full_scale", c.of_full_scale}};
   out["noise_rms"] = c.noise_rms ? json(*c.noise_rms) : json(nullptr);
   out["hum"] = nullptr;
   if (!c.hum) return out;
@@ -34,9 +39,14 @@ json to_json(const rosin::channel_check& c) {
 json to_json(const rosin::take_check& take, const rosin::rig& rig) {
   const auto or_null = [](const std::optional<double>& x) { return x ? json(*x) : json(nullptr); };
   const auto* declared = rig.find_take(take.take);
-  json out{{"name", take.take}, {"kind", name_of(declared->kind)}, {"file", declared->file},
-           {"sample_rate_Hz", take.sample_rate_Hz}, {"duration_s", take.duration_s}, {"release_s", or_null(take.release_s)},
-           {"pitch_Hz", or_null(take.pitch_Hz)}, {"quality", or_null(take.quality)}};
+  json out{{"name", take.take},
+           {"kind", name_of(declared->kind)},
+           {"file", declared->file},
+           {"sample_rate_Hz", take.sample_rate_Hz},
+           {"duration_s", take.duration_s},
+           {"release_s", or_null(take.release_s)},
+           {"pitch_Hz", or_null(take.pitch_Hz)},
+           {"quality", or_null(take.quality)}};
   out["channels"] = json::array();
   for (const auto& c : take.channels) out["channels"].push_back(to_json(c));
   out["findings"] = json::array();
@@ -46,8 +56,8 @@ json to_json(const rosin::take_check& take, const rosin::rig& rig) {
 
 void print_text(const rosin::take_check& take, const rosin::rig& rig) {
   const auto* declared = rig.find_take(take.take);
-  std::cout << take.take << " (" << name_of(declared->kind) << ", " << declared->file << "): " << in_digits(take.duration_s) << " s at "
-            << in_digits(take.sample_rate_Hz, "%.0f") << " Hz";
+  std::cout << take.take << " (" << name_of(declared->kind) << ", " << declared->file << "): " << in_digits(take.duration_s)
+            << " s at " << in_digits(take.sample_rate_Hz, "%.0f") << " Hz";
   if (take.release_s) std::cout << ", released at " << in_digits(*take.release_s, "%.5f") << " s";
   if (take.pitch_Hz) std::cout << ", rings at " << in_digits(*take.pitch_Hz, "%.2f") << " Hz";
   std::cout << '\n';
@@ -74,11 +84,15 @@ tally count(const std::vector<rosin::take_check>& takes) {
   return out;
 }
 
-void print_result(const options& given, const provenance& from, const rosin::rig_folder& folder, const std::vector<rosin::take_check>& takes,
-                  const tally& found) {
+void print_result(const options& given, const provenance& from, const rosin::rig_folder& folder,
+                  const std::vector<rosin::take_check>& takes, const tally& found) {
   const auto assumed = rosin::values_of(folder.rig).assumed;
   if (given.json) {
-    json out{{"schema", 1}, {"provenance", from.to_json()}, {"rig", folder.rig.title.value_or(folder.rig.file)}, {"errors", found.errors}, {"warnings", found.warnings}};
+    json out{{"schema", 1},
+             {"provenance", from.to_json()},
+             {"rig", folder.rig.title.value_or(folder.rig.file)},
+             {"errors", found.errors},
+             {"warnings", found.warnings}};
     out["takes"] = json::array();
     for (const auto& take : takes) out["takes"].push_back(to_json(take, folder.rig));
     out["notes"] = folder.notes;

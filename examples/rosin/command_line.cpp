@@ -21,17 +21,13 @@ exit_code fail(const std::string& message, bool as_json) {
   return exit_code::bad_input;
 }
 
-void print(const json& document) {
-  std::cout << document.dump(2, ' ', false, json::error_handler_t::replace) << '\n';
-}
+void print(const json& document) { std::cout << document.dump(2, ' ', false, json::error_handler_t::replace) << '\n'; }
 
 void add_json_option(CLI::App& command, bool& as_json) {
   command.add_flag("--json", as_json, "Print the result as JSON, for a program to read");
 }
 
-void add_force_option(CLI::App& command, bool& force) {
-  command.add_flag("--force", force, "Overwrite files that exist");
-}
+void add_force_option(CLI::App& command, bool& force) { command.add_flag("--force", force, "Overwrite files that exist"); }
 
 void add_table_options(CLI::App& command, table_output& output) {
   command.add_option("--out", output.path, "File to write")->required()->type_name("FILE");

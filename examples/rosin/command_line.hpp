@@ -35,9 +35,7 @@ struct table_output {
   std::string path, format = "csv";
   bool force = false;
 
-  [[nodiscard]] rosin::overwrite existing() const noexcept {
-    return force ? rosin::overwrite::allow : rosin::overwrite::refuse;
-  }
+  [[nodiscard]] rosin::overwrite existing() const noexcept { return force ? rosin::overwrite::allow : rosin::overwrite::refuse; }
 };
 void add_table_options(CLI::App& command, table_output& output);
 void add_force_option(CLI::App& command, bool& force);

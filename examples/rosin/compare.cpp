@@ -41,18 +41,19 @@ rosin::outcome<double> common_rate(const options& given, const rosin::table& res
   if (a == nullptr) return rosin::failure{given.result + ": has no column time_s"};
   if (b == nullptr) return rosin::failure{given.truth + ": has no column time_s"};
   if (a->values.size() != b->values.size())
-    return rosin::failure{given.result + " has " + std::to_string(a->values.size()) + " rows, " + given.truth + " has " + std::to_string(b->values.size()) +
-                          ": not the same take"};
+    return rosin::failure{given.result + " has " + std::to_string(a->values.size()) + " rows, " + given.truth + " has " +
+                          std::to_string(b->values.size()) + ": not the same take"};
   if (a->values.size() < 2) return rosin::failure{given.result + ": too few rows to compare"};
   const double step = (a->values.back() - a->values.front()) / static_cast<double>(a->values.size() - 1);
   for (std::size_t i = 0; i < a->values.size(); ++i)
     if (!(std::abs(a->values[i] - b->values[i]) < 0.01 * step))
-      return rosin::failure{given.result + " and " + given.truth + ": row " + std::to_string(i + 1) + " belongs to different instants"};
+      return rosin::failure{given.result + " and " + given.truth + ": row " + std::to_string(i + 1) +
+                            " belongs to different instants"};
   return 1 / step;
 }
 
-rosin::outcome<std::vector<compared>> compare(const options& given, const rosin::table& result, const rosin::table& truth, double rate_Hz,
-                                              const rosin::band& window) {
+rosin::outcome<std::vector<compared>> compare(const options& given, const rosin::table& result, const rosin::table& truth,
+                                              double rate_Hz, const rosin::band& window) {
   std::vector<compared> out;
   for (const char* name : {"force_N", "velocity_m_s", "torsion_velocity_m_s"}) {
     const auto* r = result.find(name);
@@ -62,23 +63,31 @@ rosin::outcome<std::vector<compared>> compare(const options& given, const rosin:
     if (one.rms_truth > 0) out.push_back(std::move(one));
   }
   if (out.empty())
-    return rosin::failure{given.result + " and " + given.truth + ": no column that both have and that holds a long enough stretch of values"};
+    return rosin::failure{given.result + " and " + given.truth +
+                          ": no column that both have and that holds a long enough stretch of values"};
   return out;
 }
 
 void print_text(const std::vector<compared>& columns, const rosin::band& window) {
-  std::cout << "both through one low-pass, " << in_digits(window.pass_Hz, "%.0f") << " to " << in_digits(window.stop_Hz, "%.0f") << " Hz\n";
+  std::cout << "both through one low-pass, " << in_digits(window.pass_Hz, "%.0f") << " to " << in_digits(window.stop_Hz, "%.0f")
+            << " Hz\n";
   for (const auto& c : columns)
-    std::cout << c.name << ": Delta " << in_digits(c.delta, "%.5f") << "; scale " << in_digits(c.scale, "%.5f") << ", and after division by it Delta "
-              << in_digits(c.delta_scaled, "%.5f") << ", error " << in_digits(c.rms_error, "%.3g") << " rms and " << in_digits(c.worst, "%.3g") << " at worst, of "
+    std::cout << c.name << ": Delta " << in_digits(c.delta, "%.5f") << "; scale " << in_digits(c.scale, "%.5f")
+              << ", and after division by it Delta " << in_digits(c.delta_scaled, "%.5f") << ", error "
+              << in_digits(c.rms_error, "%.3g") << " rms and " << in_digits(c.worst, "%.3g") << " at worst, of "
               << in_digits(c.rms_truth, "%.3g") << " rms\n";
 }
 
 void print_json(const std::vector<compared>& columns, const rosin::band& window, const provenance& from) {
-  json out{{"schema", 1}, {"provenance", from.to_json()}, {"low_pass", {{"pass_Hz", window.pass_Hz}, {"stop_Hz", window.stop_Hz}}}};
+  json out{
+      {"schema", 1}, {"provenance", from.to_json()}, {"low_pass", {{"pass_Hz", window.pass_Hz}, {"stop_Hz", window.stop_Hz}}}};
   for (const auto& c : columns)
-    out["columns"][c.name] = {{"delta", c.delta}, {"scale", c.scale}, {"delta_after_scale", c.delta_scaled}, {"rms_error_after_scale", c.rms_error},
-                              {"worst_error_after_scale", c.worst}, {"rms_truth", c.rms_truth}};
+    out["columns"][c.name] = {{"delta", c.delta},
+                              {"scale", c.scale},
+                              {"delta_after_scale", c.delta_scaled},
+                              {"rms_error_after_scale", c.rms_error},
+                              {"worst_error_after_scale", c.worst},
+                              {"rms_truth", c.rms_truth}};
   print(out);
 }
 
@@ -107,9 +116,15 @@ void add_compare(CLI::App& app, exit_code& result) {
   auto given = std::make_shared<options>();
   CLI::App* command = app.add_subcommand("compare", "How far a reconstruction is from the truth of a simulation");
   command->add_option("RESULT", given->result, "Table of `rosin reconstruct`, as CSV")->required()->type_name("FILE.csv");
-  command->add_option("TRUTH", given->truth, "Table of `rosin simulate`, or another reconstruction of the same take")->required()->type_name("FILE.csv");
-  command->add_option("--pass", given->pass_Hz, "Both are low-passed: end of the pass band, 20000 if left out")->check(CLI::PositiveNumber)->type_name("HZ");
-  command->add_option("--stop", given->stop_Hz, "Nothing is left from here on, 1.5 times the pass band if left out")->check(CLI::PositiveNumber)->type_name("HZ");
+  command->add_option("TRUTH", given->truth, "Table of `rosin simulate`, or another reconstruction of the same take")
+      ->required()
+      ->type_name("FILE.csv");
+  command->add_option("--pass", given->pass_Hz, "Both are low-passed: end of the pass band, 20000 if left out")
+      ->check(CLI::PositiveNumber)
+      ->type_name("HZ");
+  command->add_option("--stop", given->stop_Hz, "Nothing is left from here on, 1.5 times the pass band if left out")
+      ->check(CLI::PositiveNumber)
+      ->type_name("HZ");
   command->add_option("--at-most", given->at_most, "Exit with 1 if force or velocity differs by more, after the common scale")
       ->check(CLI::NonNegativeNumber)
       ->type_name("DELTA");

@@ -35,13 +35,15 @@ rosin::band compared_band(double rate_Hz, std::optional<double> pass_Hz, std::op
   return {pass, stop_Hz.value_or(std::min(1.5 * pass, (pass + rate_Hz / 2) / 2))};
 }
 
-compared compare_columns(const std::string& name, const std::vector<double>& result, const std::vector<double>& truth, double rate_Hz, const rosin::band& window) {
+compared compare_columns(const std::string& name, const std::vector<double>& result, const std::vector<double>& truth,
+                         double rate_Hz, const rosin::band& window) {
   const auto known = known_in_both(result, truth);
   const auto margin = static_cast<std::size_t>(std::ceil(4 * rate_Hz / (window.stop_Hz - window.pass_Hz)));
   if (known.end - known.begin < 4 * margin) return {.name = name};
   const auto within = [&](const std::vector<double>& x) {
     const auto filtered = rosin::low_pass<double>(std::span{x}.subspan(known.begin, known.end - known.begin), rate_Hz, window);
-    std::vector<double> kept(filtered.begin() + static_cast<std::ptrdiff_t>(margin), filtered.end() - static_cast<std::ptrdiff_t>(margin));
+    std::vector<double> kept(filtered.begin() + static_cast<std::ptrdiff_t>(margin),
+                             filtered.end() - static_cast<std::ptrdiff_t>(margin));
     const double mean = std::accumulate(kept.begin(), kept.end(), 0.0) / static_cast<double>(kept.size());
     for (double& value : kept) value -= mean;
     return kept;

@@ -11,19 +11,26 @@ namespace tool {
 namespace {
 
 /// The effects of the catalogue that a diagnosis names, in the order in which its calibration holds them.
-std::vector<rosin::pluck_effect> effects_of(const json& diagnosis, const std::vector<rosin::pluck_effect>& catalogue, corrected_model& out) {
+std::vector<rosin::pluck_effect> effects_of(const json& diagnosis, const std::vector<rosin::pluck_effect>& catalogue,
+                                            corrected_model& out) {
   std::vector<rosin::pluck_effect> found;
   const json& calibration = diagnosis.at("calibration");
   for (const json& m : diagnosis.at("missing")) {
     const std::string name = m.at("effect");
     const auto& where = m.at("where");
     const std::string place = where.value("end", where.value("channel", std::string{}));
-    const auto is_it = [&](const rosin::pluck_effect& c) { return c.name == name && place == (c.place < 0 ? "" : c.place == 0 ? "near" : "far"); };
-    auto e = std::find_if(catalogue.begin(), catalogue.end(), [&](const auto& c) { return is_it(c) && calibration.contains(c.id() + " " + c.parameters.front().name); });
+    const auto is_it = [&](const rosin::pluck_effect& c) {
+      return c.name == name && place == (c.place < 0 ? "" : c.place == 0 ? "near" : "far");
+    };
+    auto e = std::find_if(catalogue.begin(), catalogue.end(), [&](const auto& c) {
+      return is_it(c) && calibration.contains(c.id() + " " + c.parameters.front().name);
+    });
     if (e == catalogue.end()) e = std::find_if(catalogue.begin(), catalogue.end(), is_it);
     if (e != catalogue.end()) found.push_back(*e), out.effects.push_back(name);
-    else if (name == "tension-drift") out.tension_drift = m.at("parameters").at("relative").at("value"), out.effects.push_back(name);
-    else if (name == "finite-contact-width" && m.at("parameters").contains("width_m")) out.contact_width_m = m["parameters"]["width_m"].at("value"), out.effects.push_back(name);
+    else if (name == "tension-drift")
+      out.tension_drift = m.at("parameters").at("relative").at("value"), out.effects.push_back(name);
+    else if (name == "finite-contact-width" && m.at("parameters").contains("width_m"))
+      out.contact_width_m = m["parameters"]["width_m"].at("value"), out.effects.push_back(name);
     else out.passed_over.push_back(name);
   }
   return found;
@@ -50,7 +57,8 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
   std::ifstream in{path};
   const json document = json::parse(in, nullptr, false);
   const auto wrong = [&](const std::string& what) { return rosin::failure{path + ": " + what}; };
-  if (!document.is_object() || !document.contains("missing") || !document.contains("calibration") || !document["calibration"].is_object() || !document["missing"].is_array())
+  if (!document.is_object() || !document.contains("missing") || !document.contains("calibration") ||
+      !document["calibration"].is_object() || !document["missing"].is_array())
     return wrong("is no diagnosis (rosin diagnose --json writes one)");
   const rosin::rig_values values = rosin::values_of(rig);
   if (!values.impedance_Ns_m) return wrong(rig.file + " does not tell the string's impedance: length_m and tension_N are needed");
@@ -62,8 +70,10 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
   if (plucks->takes.empty()) return wrong("calibration has none of the plucks that " + rig.file + " names");
   corrected_model out{path, {}, 0, 0, {}, {}, from};
   const rosin::pluck_layout layout(plucks->takes, plucks->options, plucks->guess.ends);
-  const double rate = plucks->takes.front().rate_Hz, pitch = value_of(calibration, layout.name(rosin::pluck_layout::fundamental))[0];
-  const rosin::string_facts facts{pitch, rate, 0.45 * rate, values.impedance_Ns_m->value, values.length_m ? values.length_m->value : 0, plucks->takes.size()};
+  const double rate = plucks->takes.front().rate_Hz,
+               pitch = value_of(calibration, layout.name(rosin::pluck_layout::fundamental))[0];
+  const rosin::string_facts facts{
+      pitch, rate, 0.45 * rate, values.impedance_Ns_m->value, values.length_m ? values.length_m->value : 0, plucks->takes.size()};
   try {
     auto effects = effects_of(document, rosin::catalogue_without({}, facts, {0.3 * rate, 0.45 * rate}), out);
     Eigen::Index count = layout.size();
@@ -71,7 +81,9 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
     Eigen::VectorXd value = Eigen::VectorXd::Zero(count), sd = value;
     for (Eigen::Index p = 0; p < layout.size(); ++p) {
       const auto [v, s] = value_of(calibration, layout.name(p));
-      if (!std::isfinite(v)) return wrong("calibration has no \"" + layout.name(p) + "\": it was made of other takes or terminations than " + rig.file + " names");
+      if (!std::isfinite(v))
+        return wrong("calibration has no \"" + layout.name(p) + "\": it was made of other takes or terminations than " +
+                     rig.file + " names");
       value[p] = v, sd[p] = s;
     }
     Eigen::Index at = layout.size();
@@ -79,11 +91,13 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
       for (const auto& q : e.parameters) {
         const auto [v, s] = value_of(calibration, e.id() + " " + q.name);
         if (q.take < 0 && !q.late && !std::isfinite(v)) return wrong("calibration has no \"" + e.id() + " " + q.name + "\"");
-        const double physical = q.take < 0 && std::isfinite(v) ? v : 0;  // of single takes: nothing that a stroke needs; a correction: 0 if not told
+        // of single takes: nothing that a stroke needs; a correction: 0 if not told
+        const double physical = q.take < 0 && std::isfinite(v) ? v : 0;
         value[at] = q.logarithmic && physical > 0 ? std::log(physical) : physical;
         sd[at++] = !std::isfinite(v) ? 0 : q.logarithmic && v > 0 ? s / v : s;
       }
-    rosin::pluck_diagnosis d{{plucks->takes, plucks->guess, plucks->options, layout}, {}, {}, {}, {}, {}, {}, {}, true, true, 0, 0, 0, {}};
+    rosin::pluck_diagnosis d{
+        {plucks->takes, plucks->guess, plucks->options, layout}, {}, {}, {}, {}, {}, {}, {}, true, true, 0, 0, 0, {}};
     d.declared.layout = layout, d.declared.value = value.head(layout.size());
     d.best.effects = std::move(effects), d.best.value = value, d.best.sd = sd;
     d.best.covariance = sd.array().square().matrix().asDiagonal();
@@ -94,27 +108,31 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
   return out;
 }
 
-rosin::outcome<processed> process_with_model(const corrected_model& model, const rosin::rig& rig, const std::string& take, const rosin::band& limits,
-                                             std::vector<std::string>& warnings) {
+rosin::outcome<processed> process_with_model(const corrected_model& model, const rosin::rig& rig, const std::string& take,
+                                             const rosin::band& limits, std::vector<std::string>& warnings) {
   provenance own{model.from};
   std::vector<std::string> said;
   const auto values = rosin::values_of(rig);
   auto strokes = reconstruct_strokes(rig, values, *model.plucks, model.tension_drift, own, said, take, limits);
   // A string that motion stretches is tighter under the bow than the plucks' mean: by as much as the force's two versions say.
   const bool stretches = std::find(model.effects.begin(), model.effects.end(), "tension-modulation") != model.effects.end();
-  if (const auto drift = stretches && model.tension_drift == 0 && !strokes.empty() ? drift_of(strokes, *model.plucks) : rosin::tension_drift{};
+  if (const auto drift =
+          stretches && model.tension_drift == 0 && !strokes.empty() ? drift_of(strokes, *model.plucks) : rosin::tension_drift{};
       drift.relative > 3 * drift.sd && drift.delta_after < drift.delta_before) {
     said.clear();
     strokes = reconstruct_strokes(rig, values, *model.plucks, drift.relative, own, said, take, limits);
-    said.push_back(take + ": its tension is " + in_digits(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
+    said.push_back(take + ": its tension is " + in_digits(100 * drift.relative, "%+.3g") +
+                   " % off the plucks': their motion stretches the string");
   }
-  if (strokes.empty()) return rosin::failure{model.file + ": " + (said.empty() ? take + " could not be reconstructed" : said.back())};
+  if (strokes.empty())
+    return rosin::failure{model.file + ": " + (said.empty() ? take + " could not be reconstructed" : said.back())};
   warnings.insert(warnings.end(), said.begin(), said.end());
   diagnosed_stroke& s = strokes.front();
   if (model.contact_width_m > 0)
     if (const auto edge_Hz = see_as_wide(rig, *model.plucks, model.contact_width_m, s))
-      warnings.push_back(take + ": force of both places of a contact of " + in_digits(1e3 * model.contact_width_m, "%.3g") + " mm and their mean velocity, up to " +
-                         in_digits(1e-3 * *edge_Hz, "%.3g") + " kHz, where they can be told apart; the two versions part as a point's do");
+      warnings.push_back(take + ": force of both places of a contact of " + in_digits(1e3 * model.contact_width_m, "%.3g") +
+                         " mm and their mean velocity, up to " + in_digits(1e-3 * *edge_Hz, "%.3g") +
+                         " kHz, where they can be told apart; the two versions part as a point's do");
   processed out;
   out.used = s.calibration, out.force_N = std::move(s.force_N), out.motion = std::move(s.motion), out.sd = std::move(s.sd);
   out.why_not_periodic = "not sought with --model";

@@ -19,7 +19,8 @@ struct corrected_model {
   std::string file;
   std::shared_ptr<const rosin::pluck_diagnosis> plucks;
   double tension_drift = 0, contact_width_m = 0;
-  std::vector<std::string> effects;   ///< of string, ends, wire, sensors and tension: those that a reconstruction can take into account
+  /// of string, ends, wire, sensors and tension: those that a reconstruction can take into account
+  std::vector<std::string> effects;
   std::vector<std::string> passed_over;  ///< of the contact: a reconstruction does not need them
   provenance from;
 };
@@ -27,7 +28,8 @@ struct corrected_model {
 [[nodiscard]] rosin::outcome<corrected_model> read_model(const std::string& path, const rosin::rig& rig, provenance& from);
 
 /// Force and velocity of one bowed take; its reason if that cannot be done.
-[[nodiscard]] rosin::outcome<processed> process_with_model(const corrected_model& model, const rosin::rig& rig, const std::string& take, const rosin::band& limits,
+[[nodiscard]] rosin::outcome<processed> process_with_model(const corrected_model& model, const rosin::rig& rig,
+                                                           const std::string& take, const rosin::band& limits,
                                                            std::vector<std::string>& warnings);
 
 }  // namespace tool

@@ -26,8 +26,10 @@ struct options {
 void print_text(const rig_diagnosis& d) {
   std::cout << d.title << ": " << d.verdict << '\n' << sentence(d) << '\n';
   for (const auto& m : d.missing) {
-    std::cout << m.effect << (m.end.empty() ? "" : ", " + m.end + " end") << (m.channel.empty() ? "" : ", channel " + m.channel) << '\n';
-    for (const auto& p : m.parameters) std::cout << "  " << p.name << " = " << in_digits(p.value, "%.6g") << " +- " << in_digits(p.sd, "%.2g") << '\n';
+    std::cout << m.effect << (m.end.empty() ? "" : ", " + m.end + " end") << (m.channel.empty() ? "" : ", channel " + m.channel)
+              << '\n';
+    for (const auto& p : m.parameters)
+      std::cout << "  " << p.name << " = " << in_digits(p.value, "%.6g") << " +- " << in_digits(p.sd, "%.2g") << '\n';
     for (const auto& other : m.indistinguishable_from) std::cout << "  cannot be told from " << other << '\n';
   }
   std::cout << d.metric << ": " << in_digits(d.before, "%.4g") << " before";
@@ -38,7 +40,8 @@ void print_text(const rig_diagnosis& d) {
     if (++shown > 6) break;
     std::string names;
     for (const auto& e : r.effects) names += (names.empty() ? "" : " + ") + e;
-    std::cout << "  " << (names.empty() ? "as declared" : names) << ": log10 of the evidence " << in_digits(r.log10_evidence, "%.4g") << '\n';
+    std::cout << "  " << (names.empty() ? "as declared" : names) << ": log10 of the evidence "
+              << in_digits(r.log10_evidence, "%.4g") << '\n';
   }
   for (const auto& line : d.assumed) std::cout << "assumed: " << line << '\n';
 }
@@ -90,17 +93,32 @@ void add_diagnose(CLI::App& app, exit_code& result) {
   auto given = std::make_shared<options>();
   CLI::App* command = app.add_subcommand("diagnose", "Say what physics the declared model leaves out");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
-  command->add_option("--json", given->json_file, "Write the diagnosis to FILE; without one, or with -, to standard output")->expected(0, 1)->default_str("-")->type_name("FILE");
+  command->add_option("--json", given->json_file, "Write the diagnosis to FILE; without one, or with -, to standard output")
+      ->expected(0, 1)
+      ->default_str("-")
+      ->type_name("FILE");
   command->add_option("--report", given->report, "Write a page with figures (needs gnuplot)")->type_name("FILE.html");
-  command->add_option("--without", given->without, "An effect that the catalogue is not to know (any number): what would be said then?")->type_name("EFFECT");
-  auto* isolability = command->add_flag("--isolability", given->isolability, "What the plucks of the rig file can tell apart, recorded or not")->excludes("--report");
-  command->add_option("--rate", given->rate_Hz, "With --isolability: sampling rate, Hz")->needs(isolability)->check(CLI::Range(8000.0, 1e6))->capture_default_str();
-  command->add_option("--noise", given->noise_N, "With --isolability: noise of a channel, rms, N")->needs(isolability)->check(CLI::PositiveNumber)->capture_default_str();
+  command
+      ->add_option("--without", given->without,
+                   "An effect that the catalogue is not to know (any number): what would be said then?")
+      ->type_name("EFFECT");
+  auto* isolability =
+      command->add_flag("--isolability", given->isolability, "What the plucks of the rig file can tell apart, recorded or not")
+          ->excludes("--report");
+  command->add_option("--rate", given->rate_Hz, "With --isolability: sampling rate, Hz")
+      ->needs(isolability)
+      ->check(CLI::Range(8000.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--noise", given->noise_N, "With --isolability: noise of a channel, rms, N")
+      ->needs(isolability)
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   add_force_option(*command, given->force);
   command->footer(
       "The model that [model] declares is fitted to the plucks; what is left is set against every effect of the catalogue,\n"
       "alone and together, and judged on takes that were not fitted. Then the strokes are reconstructed with what was found,\n"
-      "and tension and contact examined. A rig without two force channels is judged by its partials. Verdicts: no-mismatch, explained, unexplained.\n"
+      "and tension and contact examined. A rig without two force channels is judged by its partials. Verdicts: no-mismatch, "
+      "explained, unexplained.\n"
       "Exit status: 0 done, 2 nothing could be done.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The contact, on strokes that are reconstructed with all that the plucks tell: which effects of it does the declared model not own up to?
+// The contact, on strokes that are reconstructed with all that the plucks tell: which effects of it does the declared model not
+// own up to?
 //
 #include "diagnose_parts.hpp"
 
@@ -12,10 +13,12 @@ namespace {
 
 constexpr int most_contact_effects = 2;
 constexpr double periods_in_picture = 4;
-constexpr double further_tone_share = 0.05;     ///< of what was gained so far on the same statistic: no model of a contact is exact either,
-constexpr double further_give_share = 0.2;      ///< and what one model of its give leaves another one takes up
-constexpr double further_other_share = 0.005;   ///< of what was gained on another statistic
-constexpr double left_of_sticking = 0.5;        ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
+constexpr double further_tone_share =
+    0.05;  ///< of what was gained so far on the same statistic: no model of a contact is exact either,
+constexpr double further_give_share = 0.2;     ///< and what one model of its give leaves another one takes up
+constexpr double further_other_share = 0.005;  ///< of what was gained on another statistic
+constexpr double left_of_sticking =
+    0.5;  ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
 
 missing_effect described(const rosin::contact_hypothesis& h, double probability) {
   missing_effect m;
@@ -40,7 +43,8 @@ bool is_hum(const rosin::contact_hypothesis& h, const rig_diagnosis& d) {
   });
 }
 
-/// Without ripples that are left of the hum; nor does anything count that gains less than twice as much as they. Whether there were any.
+/// Without ripples that are left of the hum; nor does anything count that gains less than twice as much as they. Whether there
+/// were any.
 bool take_out_hum(rosin::contact_findings& found, const rig_diagnosis& d) {
   double most = 0;
   for (const auto& h : found.hypotheses)
@@ -53,9 +57,13 @@ bool take_out_hum(rosin::contact_findings& found, const rig_diagnosis& d) {
 /// The data that a statistic is taken from: what sticks, at one place or at two, or what slips.
 std::string data_of(const std::string& statistic) { return statistic == "friction-residual" ? statistic : "stick-fluctuation"; }
 
-double left_in(const std::string& data, const rosin::contact_findings& found) { return data == "friction-residual" ? found.friction_residual : found.stick_fluctuation; }
+double left_in(const std::string& data, const rosin::contact_findings& found) {
+  return data == "friction-residual" ? found.friction_residual : found.stick_fluctuation;
+}
 
-double floor_in(const std::string& data, const rosin::contact_findings& found) { return data == "friction-residual" ? found.friction_floor : found.stick_floor; }
+double floor_in(const std::string& data, const rosin::contact_findings& found) {
+  return data == "friction-residual" ? found.friction_floor : found.stick_floor;
+}
 
 /// Before and floor are those of what the contact is judged by.
 void judge_by(const std::string& statistic, const rosin::contact_findings& found, rig_diagnosis& d) {
@@ -72,17 +80,22 @@ using gains_so_far = std::map<std::string, double>;
 double least_further(const gains_so_far& sofar, const rosin::contact_hypothesis& h) {
   const bool gives = h.statistic == "stick-fluctuation" && h.effect != "speed-ripple";
   double least = 0;
-  for (const auto& [data, nats] : sofar) least = std::max(least, nats * (data != data_of(h.statistic) ? further_other_share : gives ? further_give_share : further_tone_share));
+  for (const auto& [data, nats] : sofar)
+    least = std::max(least, nats * (data != data_of(h.statistic) ? further_other_share
+                                    : gives                      ? further_give_share
+                                                                 : further_tone_share));
   return least;
 }
 
-/// Takes up the likeliest contact effect where it gains clearly; true if there was one. `found` is of the model with `sofar` gained.
+/// Takes up the likeliest contact effect where it gains clearly; true if there was one. `found` is of the model with `sofar`
+/// gained.
 bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_diagnosis& d) {
   if (sofar.empty())
     for (const auto& line : found.warnings) d.warnings.push_back(line);
   if (take_out_hum(found, d)) {
     d.warnings.emplace_back("a ripple at a multiple of the mains' frequency: taken for what is left of the hum");
-    found.as_declared = std::none_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return found.stands(h); });
+    found.as_declared =
+        std::none_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return found.stands(h); });
   }
   const bool nothing = found.as_declared;  // else the first one stands
   const double gained = nothing ? 0.0 : std::max(0.0, found.hypotheses.front().evidence(found.independent));
@@ -97,7 +110,9 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
   const auto& best = found.hypotheses.front();
   if (best.gain < least_further(sofar, best)) return false;
   // What explains far more, but with parameters that the strokes leave open, forbids to name the lesser.
-  if (std::any_of(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return !h.decided && h.gain > 2 * best.gain && h.gain > found.threshold; })) return false;
+  if (std::any_of(found.hypotheses.begin(), found.hypotheses.end(),
+                  [&](const auto& h) { return !h.decided && h.gain > 2 * best.gain && h.gain > found.threshold; }))
+    return false;
   double second = 0;
   for (std::size_t i = 1; i < found.hypotheses.size(); ++i)
     if (const double g = found.hypotheses[i].gain; g <= best.gain) second = std::max(second, g);
@@ -113,19 +128,26 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
 }
 
 /// What the sticking string moves by beyond noise.
-double stick_excess(const rosin::contact_findings& f) { return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor)); }
+double stick_excess(const rosin::contact_findings& f) {
+  return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor));
+}
 
-/// Whether what no name was found for is as little as noise and imperfect models leave; else what shows it is what d is judged by.
+/// Whether what no name was found for is as little as noise and imperfect models leave; else what shows it is what d is judged
+/// by.
 bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found, rig_diagnosis& d) {
   constexpr double much = 5, least = 0.06;
-  const auto apart = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return s.delta > std::max(least, much * parting_by_noise(s)); });
+  const auto apart = std::find_if(strokes.begin(), strokes.end(),
+                                  [&](const auto& s) { return s.delta > std::max(least, much * parting_by_noise(s)); });
   const std::string statistic = rosin::beyond_doubt(found);
-  if (apart != strokes.end()) d.metric = "force-consistency", d.take = apart->name, d.before = apart->delta, d.after = d.before, d.noise_floor = parting_by_noise(*apart);
+  if (apart != strokes.end())
+    d.metric = "force-consistency", d.take = apart->name, d.before = apart->delta, d.after = d.before,
+    d.noise_floor = parting_by_noise(*apart);
   else if (!statistic.empty()) judge_by(statistic, found, d);
   return apart == strokes.end() && statistic.empty();
 }
 
-/// The stretch of so many seconds in which most is left, summed over its samples; a few that stand out far count as four times the median.
+/// The stretch of so many seconds in which most is left, summed over its samples; a few that stand out far count as four times
+/// the median.
 struct loud_stretch {
   double begin_s = 0, sum = 0;
 };
@@ -156,7 +178,9 @@ contact_picture picture_of(const std::vector<rosin::contact_trace>& before, cons
   return out;
 }
 
-const std::vector<rosin::contact_trace>& traces_of(const std::string& statistic, const rosin::contact_findings& found) { return data_of(statistic) == "friction-residual" ? found.slipping : found.sticking; }
+const std::vector<rosin::contact_trace>& traces_of(const std::string& statistic, const rosin::contact_findings& found) {
+  return data_of(statistic) == "friction-residual" ? found.slipping : found.sticking;
+}
 
 double period_of(const std::vector<diagnosed_stroke>& strokes) {
   const auto& delay = strokes.front().calibration.at.delay_s;
@@ -164,7 +188,8 @@ double period_of(const std::vector<diagnosed_stroke>& strokes) {
 }
 double shown_length_s(const rosin::contact_hypothesis& h, const std::vector<diagnosed_stroke>& strokes) {
   for (const auto& p : h.parameters)
-    if (p.name == "frequency_Hz" && h.effect.find("ripple") != std::string::npos && p.value > 0) return periods_in_picture / p.value;
+    if (p.name == "frequency_Hz" && h.effect.find("ripple") != std::string::npos && p.value > 0)
+      return periods_in_picture / p.value;
   return periods_in_picture * period_of(strokes);
 }
 
@@ -183,17 +208,20 @@ void show(rig_diagnosis& d, double noise, bool alone) {
 using asked_contact = std::function<rosin::contact_findings(const rosin::contact_model&)>;
 
 /// The first of two once more, with the second in the model: it may have held a part of it.
-void settle_first(const asked_contact& ask, const rosin::contact_model& declared, const rosin::contact_hypothesis& second, missing_effect& first) {
+void settle_first(const asked_contact& ask, const rosin::contact_model& declared, const rosin::contact_hypothesis& second,
+                  missing_effect& first) {
   const rosin::contact_findings found = ask(rosin::include(declared, second));
-  const auto again = std::find_if(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return h.effect == first.effect; });
+  const auto again =
+      std::find_if(found.hypotheses.begin(), found.hypotheses.end(), [&](const auto& h) { return h.effect == first.effect; });
   if (again == found.hypotheses.end() || !found.stands(*again)) return;
   missing_effect m = described(*again, first.probability);
   m.indistinguishable_from = first.indistinguishable_from;
   first = std::move(m);
 }
 
-/// Torsion does not feel the tension. Declared relative to transverse waves as the plucks had them, its speed and impedance are other multiples
-/// of what the strokes have; declared at the strokes' tension, they are not: whichever leaves less while the string sticks.
+/// Torsion does not feel the tension. Declared relative to transverse waves as the plucks had them, its speed and impedance are
+/// other multiples of what the strokes have; declared at the strokes' tension, they are not: whichever leaves less while the
+/// string sticks.
 void take_up_drift(const asked_contact& ask, double tension_drift, rosin::contact_model& model, rosin::contact_findings& found) {
   if (tension_drift == 0 || !model.torsion) return;
   rosin::contact_model other = model;
@@ -205,7 +233,8 @@ void take_up_drift(const asked_contact& ask, double tension_drift, rosin::contac
 
 }  // namespace
 
-bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks, double tension_drift, const std::vector<std::string>& without, rig_diagnosis& d) {
+bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks,
+                     double tension_drift, const std::vector<std::string>& without, rig_diagnosis& d) {
   rosin::contact_model model = declared_contact(rig);
   model.included.insert(model.included.end(), without.begin(), without.end());
   const asked_contact ask = [&](const rosin::contact_model& m) { return contact_of(rig, strokes, plucks, m); };
@@ -231,12 +260,14 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     found = ask(model);
     if (best.width_s > 0) excess = stick_excess(found);  // now seen at the average of both places, and much better
     if (first == data_of(first)) add_after(traces_of(first, found), *d.contact);
-    if (others == 0 && data_of(first) == d.metric && (first == d.metric || round > 0)) d.after = left_in(d.metric, found), d.noise_floor = floor_in(d.metric, found);
+    if (others == 0 && data_of(first) == d.metric && (first == d.metric || round > 0))
+      d.after = left_in(d.metric, found), d.noise_floor = floor_in(d.metric, found);
   }
   const bool named = d.missing.size() > others;
   if (!named && others == 0 && !found.as_declared) judge_by(found.hypotheses.front().statistic, found, d);
   const bool rests = named || others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
-  if (!rests && d.metric != "force-consistency") d.contact = picture_of(traces_of(d.metric, found), d.metric, periods_in_picture * period_of(strokes)), first = d.metric;
+  if (!rests && d.metric != "force-consistency")
+    d.contact = picture_of(traces_of(d.metric, found), d.metric, periods_in_picture * period_of(strokes)), first = d.metric;
   if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
   if (!named) return rests;
   if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;

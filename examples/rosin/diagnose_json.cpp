@@ -25,7 +25,9 @@ json to_json(const missing_effect& m) {
   if (m.position) where["position"] = *m.position;
   for (const auto& p : m.parameters)
     if (std::isfinite(p.value)) parameters[p.name] = with_interval(p);
-  return {{"effect", m.effect}, {"where", where}, {"probability", m.probability}, {"indistinguishable_from", m.indistinguishable_from}, {"parameters", parameters}, {"statement", m.statement}};
+  return {{"effect", m.effect},           {"where", where},
+          {"probability", m.probability}, {"indistinguishable_from", m.indistinguishable_from},
+          {"parameters", parameters},     {"statement", m.statement}};
 }
 
 }  // namespace
@@ -33,20 +35,25 @@ json to_json(const missing_effect& m) {
 json to_json(const rig_diagnosis& d, const provenance& from) {
   json out{{"schema", 1}, {"rig", d.title}, {"verdict", d.verdict}};
   out["mismatch"] = d.verdict == "no-mismatch" ? json(nullptr)
-                                                : json{{"take", d.take},
-                                                       {"channel", d.channel.empty() ? json(nullptr) : json(d.channel)},
-                                                       {"time_s", pair_or_null(d.time_s)},
-                                                       {"band_Hz", pair_or_null(d.band_Hz)},
-                                                       {"position", d.position ? json(*d.position) : json(nullptr)},
-                                                       {"residual_over_noise", d.residual_over_noise}};
+                                               : json{{"take", d.take},
+                                                      {"channel", d.channel.empty() ? json(nullptr) : json(d.channel)},
+                                                      {"time_s", pair_or_null(d.time_s)},
+                                                      {"band_Hz", pair_or_null(d.band_Hz)},
+                                                      {"position", d.position ? json(*d.position) : json(nullptr)},
+                                                      {"residual_over_noise", d.residual_over_noise}};
   out["missing"] = json::array();
   for (const auto& m : d.missing) out["missing"].push_back(to_json(m));
   out["ranking"] = json::array();
   for (const auto& r : d.ranking) out["ranking"].push_back({{"effects", r.effects}, {"log10_evidence", r.log10_evidence}});
   out["calibration"] = json::object();
   for (const auto& v : d.calibration)
-    if (std::isfinite(v.value)) out["calibration"][v.name] = std::isfinite(v.sd) ? json{{"value", v.value}, {"sd", v.sd}} : json{{"value", v.value}};
-  out["fit"] = {{"metric", d.metric}, {"held_out", d.held_out}, {"before", number(d.before)}, {"after", d.after ? number(*d.after) : json(nullptr)}, {"noise_floor", number(d.noise_floor)}};
+    if (std::isfinite(v.value))
+      out["calibration"][v.name] = std::isfinite(v.sd) ? json{{"value", v.value}, {"sd", v.sd}} : json{{"value", v.value}};
+  out["fit"] = {{"metric", d.metric},
+                {"held_out", d.held_out},
+                {"before", number(d.before)},
+                {"after", d.after ? number(*d.after) : json(nullptr)},
+                {"noise_floor", number(d.noise_floor)}};
   out["assumed"] = d.assumed;
   out["warnings"] = d.warnings;
   out["provenance"] = from.to_json();

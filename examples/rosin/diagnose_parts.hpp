@@ -34,7 +34,8 @@ struct plucks_to_diagnose {
   rosin::pluck_options options;
   std::vector<std::string> warnings;
 };
-[[nodiscard]] rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from);
+[[nodiscard]] rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values,
+                                                           provenance& from);
 
 /// What the plucks tell; where one of them contradicts the others, `odd` holds that one and what these tell.
 struct plucks_told {
@@ -43,27 +44,32 @@ struct plucks_told {
 
   [[nodiscard]] const rosin::pluck_diagnosis& sound() const { return odd ? odd->others : found; }
 };
-[[nodiscard]] rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, std::vector<std::string>& warnings,
+[[nodiscard]] rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values,
+                                                             provenance& from, std::vector<std::string>& warnings,
                                                              const std::vector<std::string>& without = {});
 
-/// A pluck that contradicts the others is what the diagnosis then is about; true if what makes it odd is found, and the catalogue knows it
-/// by name. An obstacle is looked for where the string's impedance is known.
-bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const std::function<bool(const char*)>& knows, rig_diagnosis& d);
+/// A pluck that contradicts the others is what the diagnosis then is about; true if what makes it odd is found, and the catalogue
+/// knows it by name. An obstacle is looked for where the string's impedance is known.
+bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const std::function<bool(const char*)>& knows,
+             rig_diagnosis& d);
 /// Samples that the checks found lost in any take; such a take is in no fit.
 void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, provenance& from, rig_diagnosis& d);
 /// Plucks that were made clearly elsewhere than declared.
 void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, rig_diagnosis& d);
 
-/// Bowed takes (all, or the one named) with the string, the ends and the sensors that the plucks tell of; what cannot be used is said
-/// in `warnings`. Band: as given, or 0.30 to 0.45 of the sampling rate.
-[[nodiscard]] std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks,
-                                                                double tension_drift, provenance& from, std::vector<std::string>& warnings,
-                                                                const std::string& only = {}, std::optional<rosin::band> band = {});
+/// Bowed takes (all, or the one named) with the string, the ends and the sensors that the plucks tell of; what cannot be used is
+/// said in `warnings`. Band: as given, or 0.30 to 0.45 of the sampling rate.
+[[nodiscard]] std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values,
+                                                                const rosin::pluck_diagnosis& plucks, double tension_drift,
+                                                                provenance& from, std::vector<std::string>& warnings,
+                                                                const std::string& only = {},
+                                                                std::optional<rosin::band> band = {});
 /// Eq. (12) as noise alone makes it.
 [[nodiscard]] double parting_by_noise(const diagnosed_stroke& s);
-/// Force and motion of a stroke under a contact of some width, in place of a point's: those of both its places, up to the frequency that
-/// is returned; the versions part as a point's do. Nothing is changed where the string's length is unknown.
-[[nodiscard]] std::optional<double> see_as_wide(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, double width_m, diagnosed_stroke& s);
+/// Force and motion of a stroke under a contact of some width, in place of a point's: those of both its places, up to the
+/// frequency that is returned; the versions part as a point's do. Nothing is changed where the string's length is unknown.
+[[nodiscard]] std::optional<double> see_as_wide(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, double width_m,
+                                                diagnosed_stroke& s);
 [[nodiscard]] rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks);
 /// The mean force that AC-coupled sensors lost, as far as friction is usually known, put into what the strokes are examined with.
 void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, std::vector<diagnosed_stroke>& strokes);
@@ -71,11 +77,13 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
 [[nodiscard]] bool is_plain(const rosin::pluck_diagnosis& plucks);
 /// The contact as the rig file declares it.
 [[nodiscard]] rosin::contact_model declared_contact(const rosin::rig& rig);
-[[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model);
+[[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
+                                                 const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model);
 
-/// One effect of the contact after the other, under strokes whose tension is the plucks' times 1 + tension_drift; true if the contact is as the model then has it. Where one was found in what sticks, that has
-/// to move by at most half of what it did, or by no more than the reconstruction leaves unsure; else none is named.
-bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks, double tension_drift, const std::vector<std::string>& without,
-                     rig_diagnosis& d);
+/// One effect of the contact after the other, under strokes whose tension is the plucks' times 1 + tension_drift; true if the
+/// contact is as the model then has it. Where one was found in what sticks, that has to move by at most half of what it did, or
+/// by no more than the reconstruction leaves unsure; else none is named.
+bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks,
+                     double tension_drift, const std::vector<std::string>& without, rig_diagnosis& d);
 
 }  // namespace tool

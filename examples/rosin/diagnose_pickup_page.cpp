@@ -18,7 +18,8 @@ const diagnosed_value* find(const missing_effect& m, const std::string& name) {
 }
 
 /// "0.021 g", or "0.3 % of the string's mass" where that is all that can be said.
-std::string either(const missing_effect& m, const std::string& si, double factor, const std::string& unit, const std::string& ratio, const std::string& of) {
+std::string either(const missing_effect& m, const std::string& si, double factor, const std::string& unit,
+                   const std::string& ratio, const std::string& of) {
   if (const auto* v = find(m, si)) return in_digits(factor * v->value) + " " + unit;
   if (const auto* v = find(m, ratio)) return in_digits(v->value) + " " + of;
   return "?";
@@ -46,14 +47,24 @@ curve level(const std::string& name, const std::vector<double>& x, const pickup_
 
 figure residual_figure(const pickup_picture& p, const rig_diagnosis& d) {
   figure f;
-  panel levels{"(a) what is left of " + p.take + ", channel " + p.channel, "time in the take / s", "dB above the noise", {}, {}, {}, {}, 270};
+  panel levels{"(a) what is left of " + p.take + ", channel " + p.channel,
+               "time in the take / s",
+               "dB above the noise",
+               {},
+               {},
+               {},
+               {},
+               270};
   levels.curves = {level("declared model", p.before, p, colour::near, 1)};
   if (d.after) levels.curves.push_back(level("corrected model", p.after, p, colour::model, 1));
-  levels.curves.push_back({"noise", {p.begin_s, levels.curves[0].x.empty() ? p.begin_s : levels.curves[0].x.back()}, {0, 0}, colour::slip, 1.4, 2});
+  levels.curves.push_back(
+      {"noise", {p.begin_s, levels.curves[0].x.empty() ? p.begin_s : levels.curves[0].x.back()}, {0, 0}, colour::slip, 1.4, 2});
   if (d.time_s) levels.heavy = {{(*d.time_s)[0], (*d.time_s)[1]}};
   f.panels = {levels};
   f.caption = "Residual of a recording to which nothing but amplitudes, phases and one pitch was fitted.";
-  if (d.time_s) f.caption += " The bar marks where it is largest; over the whole stretch it is " + in_digits(d.residual_over_noise) + " times the noise.";
+  if (d.time_s)
+    f.caption += " The bar marks where it is largest; over the whole stretch it is " + in_digits(d.residual_over_noise) +
+                 " times the noise.";
   return f;
 }
 
@@ -65,7 +76,8 @@ figure wave_figure(const pickup_picture& p, bool corrected) {
   const auto wave = [&](const char* title, const std::vector<double>& x, const char* ink) {
     panel w{title, "time in the take / ms", "residual", {}, {}, {}, std::pair{-1.1 * most, 1.1 * most}, 200};
     curve c{"", {}, {}, ink, 1.1};
-    for (std::size_t i = 0; i < count; ++i) c.x.push_back(1e3 * (p.begin_s + static_cast<double>(i) / p.rate_Hz)), c.y.push_back(x[i]);
+    for (std::size_t i = 0; i < count; ++i)
+      c.x.push_back(1e3 * (p.begin_s + static_cast<double>(i) / p.rate_Hz)), c.y.push_back(x[i]);
     w.curves = {c};
     return w;
   };
@@ -80,12 +92,15 @@ figure wave_figure(const pickup_picture& p, bool corrected) {
 void add_bar(curve& c, double x, double y, double sd, double width) {
   const double gap = std::nan("");
   const double half = std::max(sd, 0.0);
-  for (const auto& [u, v] : {std::pair{x, y - half}, {x, y + half}, {gap, gap}, {x - width, y}, {x + width, y}, {gap, gap}}) c.x.push_back(u), c.y.push_back(v);
+  for (const auto& [u, v] : {std::pair{x, y - half}, {x, y + half}, {gap, gap}, {x - width, y}, {x + width, y}, {gap, gap}})
+    c.x.push_back(u), c.y.push_back(v);
 }
 
 figure law_figure(const pickup_picture& p, bool corrected) {
-  panel pitch{"(a) partials against the declared law", "partial", "cents", {}, {}, {}, {}, 250}, loss{"(b) loss", "partial", "1000 / Q", {}, {}, {}, {}, 250};
-  curve seen{"measured", {}, {}, colour::near, 1.6}, lost = seen, law{"corrected law", {}, {}, colour::model, 1.2}, law_lost = law;
+  panel pitch{"(a) partials against the declared law", "partial", "cents", {}, {}, {}, {}, 250},
+      loss{"(b) loss", "partial", "1000 / Q", {}, {}, {}, {}, 250};
+  curve seen{"measured", {}, {}, colour::near, 1.6}, lost = seen, law{"corrected law", {}, {}, colour::model, 1.2},
+                                                     law_lost = law;
   curve flat{"declared law", {}, {}, colour::declared, 1.3, 2}, flat_lost = flat;
   for (const auto& q : p.partials) {
     const double quality = std::numbers::pi * q.frequency_Hz / 1000;
@@ -103,7 +118,9 @@ figure law_figure(const pickup_picture& p, bool corrected) {
   figure f;
   f.panels = {pitch, loss};
   f.share_axis();
-  f.caption = "What the fitted takes say of each partial (bars: one standard deviation), and the laws. Glide and second lines, where found, are taken out before.";
+  f.caption =
+      "What the fitted takes say of each partial (bars: one standard deviation), and the laws. Glide and second lines, where "
+      "found, are taken out before.";
   return f;
 }
 
@@ -112,16 +129,37 @@ figure law_figure(const pickup_picture& p, bool corrected) {
 std::string pickup_statement(const missing_effect& m) {
   const auto& e = m.effect;
   const std::string mass = either(m, "mass_kg", 1e3, "g", "mass_over_string", "of the string's mass");
-  if (e == "bending-stiffness") return "The string is stiff: B = " + either(m, "bending_stiffness_Nm2", 1, "N m2", "inharmonicity", "T L2 / pi2 (inharmonicity)") + ".";
-  if (e == "frequency-dependent-loss") return "Losses grow with frequency: 1/Q rises by " + value(m, "loss_internal_s", 1e6) + " per million hertz.";
+  if (e == "bending-stiffness")
+    return "The string is stiff: B = " +
+           either(m, "bending_stiffness_Nm2", 1, "N m2", "inharmonicity", "T L2 / pi2 (inharmonicity)") + ".";
+  if (e == "frequency-dependent-loss")
+    return "Losses grow with frequency: 1/Q rises by " + value(m, "loss_internal_s", 1e6) + " per million hertz.";
   if (e == "air-loss") return "Air takes part in the loss: " + value(m, "loss_air_sqrt_Hz") + " / sqrt(f) in 1/Q.";
-  if (e == "resistive-end") return "An end takes up energy at all frequencies alike: " + either(m, "resistance_Ns_m", 1, "N s/m", "conductance_times_impedance", "of the string's impedance times its conductance") + ".";
-  if (e == "point-mass") return "Something heavy sits on the string at " + value(m, "position") + " of its length (or its mirror image): " + mass + ".";
-  if (e == "point-damper") return "Something damps the string at " + value(m, "position") + " of its length (or its mirror image): " + either(m, "resistance_Ns_m", 1, "N s/m", "resistance_over_impedance", "of its impedance") + ".";
-  if (e == "support-resonance") return "An end gives way: it resonates at " + value(m, "frequency_Hz", 1, "%.4g") + " Hz (Q " + value(m, "q") + ", " + mass + ").";
-  if (e == "tension-modulation") return find(m, "axial_stiffness_N") != nullptr ? "Motion stretches the string: E A = " + value(m, "axial_stiffness_N") + " N." : "Motion stretches the string: it starts sharp by " + value(m, "pitch_rise", 1200 / std::log(2.0)) + " cents in the loudest take.";
-  if (e == "second-polarization" && find(m, "detuning_scatter") != nullptr) return "The string moves in two planes, and its ends hold these differently: partials are pairs, mostly " + value(m, "detuning_scatter", 1200 / std::log(2.0)) + " cents apart, each of its own.";
-  if (e == "second-polarization") return "The string moves in two planes, detuned by " + value(m, "detuning", 1200 / std::log(2.0)) + " cents (coupling " + value(m, "coupling") + ").";
+  if (e == "resistive-end")
+    return "An end takes up energy at all frequencies alike: " +
+           either(m, "resistance_Ns_m", 1, "N s/m", "conductance_times_impedance",
+                  "of the string's impedance times its conductance") +
+           ".";
+  if (e == "point-mass")
+    return "Something heavy sits on the string at " + value(m, "position") + " of its length (or its mirror image): " + mass +
+           ".";
+  if (e == "point-damper")
+    return "Something damps the string at " + value(m, "position") + " of its length (or its mirror image): " +
+           either(m, "resistance_Ns_m", 1, "N s/m", "resistance_over_impedance", "of its impedance") + ".";
+  if (e == "support-resonance")
+    return "An end gives way: it resonates at " + value(m, "frequency_Hz", 1, "%.4g") + " Hz (Q " + value(m, "q") + ", " + mass +
+           ").";
+  if (e == "tension-modulation")
+    return find(m, "axial_stiffness_N") != nullptr
+               ? "Motion stretches the string: E A = " + value(m, "axial_stiffness_N") + " N."
+               : "Motion stretches the string: it starts sharp by " + value(m, "pitch_rise", 1200 / std::log(2.0)) +
+                     " cents in the loudest take.";
+  if (e == "second-polarization" && find(m, "detuning_scatter") != nullptr)
+    return "The string moves in two planes, and its ends hold these differently: partials are pairs, mostly " +
+           value(m, "detuning_scatter", 1200 / std::log(2.0)) + " cents apart, each of its own.";
+  if (e == "second-polarization")
+    return "The string moves in two planes, detuned by " + value(m, "detuning", 1200 / std::log(2.0)) + " cents (coupling " +
+           value(m, "coupling") + ").";
   if (e == "mains-hum") return "Mains hum at " + value(m, "frequency_Hz", 1, "%.5g") + " Hz and multiples.";
   if (e == "sympathetic-string") return "Another string rings along at " + value(m, "frequency_Hz", 1, "%.5g") + " Hz.";
   return "Missing: " + e + ".";

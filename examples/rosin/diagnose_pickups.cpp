@@ -18,11 +18,16 @@ namespace {
 
 std::optional<rosin::pickup_kind> kind_of(rosin::quantity what) {
   switch (what) {
-    case rosin::quantity::termination_force: return rosin::pickup_kind::force;
-    case rosin::quantity::string_velocity: return rosin::pickup_kind::velocity;
-    case rosin::quantity::string_displacement: return rosin::pickup_kind::displacement;
-    case rosin::quantity::sound: return rosin::pickup_kind::sound;
-    default: return std::nullopt;
+    case rosin::quantity::termination_force:
+      return rosin::pickup_kind::force;
+    case rosin::quantity::string_velocity:
+      return rosin::pickup_kind::velocity;
+    case rosin::quantity::string_displacement:
+      return rosin::pickup_kind::displacement;
+    case rosin::quantity::sound:
+      return rosin::pickup_kind::sound;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -37,7 +42,9 @@ void add_signals(const rosin::take& take, const rosin::take_signals& read, heard
     const auto kind = kind_of(signal.sensor.quantity);
     if (!kind) continue;
     out.calibrated_force = out.calibrated_force && *kind == rosin::pickup_kind::force && signal.sensor.per_full_scale;
-    (take.hold_out ? out.held : out.fitted).push_back({take.name, signal.sensor.name, read.sample_rate_Hz, signal.values, *kind, signal.sensor.position.value_or(0)});
+    (take.hold_out ? out.held : out.fitted)
+        .push_back(
+            {take.name, signal.sensor.name, read.sample_rate_Hz, signal.values, *kind, signal.sensor.position.value_or(0)});
   }
 }
 
@@ -68,7 +75,8 @@ rosin::outcome<heard_plucks> read_all(const rosin::rig& rig, provenance& from, r
     if (read && rosin::has_error(read->check.findings)) d.warnings.push_back(take.name + ": left out for the error above");
     else if (read) add_signals(take, read->signals, out);
   }
-  if (out.fitted.empty() && out.held.empty()) return rosin::failure{rig.file + ": no pluck heard by a pickup, a microphone or a force channel"};
+  if (out.fitted.empty() && out.held.empty())
+    return rosin::failure{rig.file + ": no pluck heard by a pickup, a microphone or a force channel"};
   if (out.fitted.empty()) return rosin::failure{rig.file + ": every pluck is marked hold_out: none is left to fit"};
   set_aside(out, rig.string.fundamental_Hz);
   return out;
@@ -89,22 +97,32 @@ string_scale scale_of(const rosin::rig_values& v, double f0, bool calibrated_for
 double relative_sd(const rosin::nominal& n) { return n.sd / n.value; }
 
 /// With the doubt in what it was scaled by.
-diagnosed_value scaled(const char* name, double value, double sd, double doubt) { return {name, value, std::hypot(sd, doubt * value)}; }
+diagnosed_value scaled(const char* name, double value, double sd, double doubt) {
+  return {name, value, std::hypot(sd, doubt * value)};
+}
 
 /// A value in SI units where the rig file gives what that takes, otherwise as a ratio under a name that says so.
 diagnosed_value named(const rosin::found_value& v, const string_scale& s, const rosin::pickup_diagnosis& p) {
   const auto& Z = s.impedance_Ns_m;
   if (v.name == "inharmonicity" && s.tension_N && s.length_m) {
     const double per = s.tension_N->value * std::pow(s.length_m->value / std::numbers::pi, 2);
-    return scaled("bending_stiffness_Nm2", v.value * per, v.sd * per, std::hypot(relative_sd(*s.tension_N), 2 * relative_sd(*s.length_m)));
+    return scaled("bending_stiffness_Nm2", v.value * per, v.sd * per,
+                  std::hypot(relative_sd(*s.tension_N), 2 * relative_sd(*s.length_m)));
   }
-  if (v.name == "mass") return s.mass_kg ? scaled("mass_kg", v.value * s.mass_kg->value, v.sd * s.mass_kg->value, relative_sd(*s.mass_kg)) : diagnosed_value{"mass_over_string", v.value, v.sd};
+  if (v.name == "mass")
+    return s.mass_kg ? scaled("mass_kg", v.value * s.mass_kg->value, v.sd * s.mass_kg->value, relative_sd(*s.mass_kg))
+                     : diagnosed_value{"mass_over_string", v.value, v.sd};
   if (v.name == "lightness") {
     const double ratio = 1 / v.value, sd = v.sd * ratio * ratio;
-    return s.mass_kg ? scaled("mass_kg", ratio * s.mass_kg->value, sd * s.mass_kg->value, relative_sd(*s.mass_kg)) : diagnosed_value{"mass_over_string", ratio, sd};
+    return s.mass_kg ? scaled("mass_kg", ratio * s.mass_kg->value, sd * s.mass_kg->value, relative_sd(*s.mass_kg))
+                     : diagnosed_value{"mass_over_string", ratio, sd};
   }
-  if (v.name == "resistance") return Z ? scaled("resistance_Ns_m", v.value * Z->value, v.sd * Z->value, relative_sd(*Z)) : diagnosed_value{"resistance_over_impedance", v.value, v.sd};
-  if (v.name == "conductance") return Z ? scaled("resistance_Ns_m", Z->value / v.value, Z->value * v.sd / (v.value * v.value), relative_sd(*Z)) : diagnosed_value{"conductance_times_impedance", v.value, v.sd};
+  if (v.name == "resistance")
+    return Z ? scaled("resistance_Ns_m", v.value * Z->value, v.sd * Z->value, relative_sd(*Z))
+             : diagnosed_value{"resistance_over_impedance", v.value, v.sd};
+  if (v.name == "conductance")
+    return Z ? scaled("resistance_Ns_m", Z->value / v.value, Z->value * v.sd / (v.value * v.value), relative_sd(*Z))
+             : diagnosed_value{"conductance_times_impedance", v.value, v.sd};
   if (v.name == "pitch_rise" && s.calibrated_force && s.tension_N) {
     const double per = 16 * std::pow(s.tension_N->value, 3);
     return scaled("axial_stiffness_N", per * p.glide_per_power, per * p.glide_per_power_sd, 3 * relative_sd(*s.tension_N));
@@ -131,7 +149,8 @@ pickup_picture picture_of(const rosin::pickup_diagnosis& p) {
   for (const auto& l : p.table.lines) {
     const auto declared = rosin::pickup_pole(p.law.declared.law, l.number), best = rosin::pickup_pole(p.law.best.law, l.number);
     constexpr double turn = 2 * std::numbers::pi;
-    out.partials.push_back({l.number, l.frequency_Hz, l.frequency_sd, l.decay_per_s, l.decay_sd, declared.imag() / turn, best.imag() / turn, -declared.real(), -best.real()});
+    out.partials.push_back({l.number, l.frequency_Hz, l.frequency_sd, l.decay_per_s, l.decay_sd, declared.imag() / turn,
+                            best.imag() / turn, -declared.real(), -best.real()});
   }
   return out;
 }
@@ -145,7 +164,8 @@ void take_over(const rosin::pickup_diagnosis& p, const rosin::rig_values& values
     d.calibration.push_back({q.name, p.law.best.law.*q.member, p.law.best.sd[static_cast<Eigen::Index>(i)]});
   }
   d.calibration.push_back({"scatter_of_decay", p.law.best.scatter_decay, 0});
-  d.calibration.push_back({p.law.best.in_proportion ? "scatter_of_pitch_Hz_per_partial" : "scatter_of_pitch_Hz", p.law.best.scatter_Hz, 0});
+  d.calibration.push_back(
+      {p.law.best.in_proportion ? "scatter_of_pitch_Hz_per_partial" : "scatter_of_pitch_Hz", p.law.best.scatter_Hz, 0});
   d.warnings.insert(d.warnings.end(), p.warnings.begin(), p.warnings.end());
   for (const auto& j : p.judged)
     if (std::find(d.held_out.begin(), d.held_out.end(), j.take) == d.held_out.end()) d.held_out.push_back(j.take);
@@ -163,35 +183,47 @@ void take_over(const rosin::pickup_diagnosis& p, const rosin::rig_values& values
 }
 
 void own_up(const rosin::rig& rig, const rosin::pickup_diagnosis& p, const heard_plucks& plucks, rig_diagnosis& d) {
-  d.assumed.emplace_back("amplitude and phase of every partial are free in every take and channel: where the pluck and the sensor are, how the sensor responds and how strong the pluck was is not judged");
-  d.assumed.emplace_back("of a take that is set aside amplitudes, phases and one pitch for all partials are free; frequencies' ratios, decays, glide and second lines are foretold");
+  d.assumed.emplace_back(
+      "amplitude and phase of every partial are free in every take and channel: where the pluck and the sensor are, how the "
+      "sensor responds and how strong the pluck was is not judged");
+  d.assumed.emplace_back(
+      "of a take that is set aside amplitudes, phases and one pitch for all partials are free; frequencies' ratios, decays, "
+      "glide and second lines are foretold");
   d.assumed.emplace_back("a place on the string is told up to its mirror image: positions count from the nearer end");
   if (plucks.halves) d.assumed.emplace_back("a single pluck: its first half was fitted, its later half foretold");
-  d.assumed.push_back("with every partial's own frequency and decay instead of any law, as the fitted takes have them, pluck-residual would be " + in_digits(p.own_poles));
+  d.assumed.push_back(
+      "with every partial's own frequency and decay instead of any law, as the fitted takes have them, pluck-residual would be " +
+      in_digits(p.own_poles));
   if (std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::bow; }))
     d.assumed.emplace_back("the strokes were not examined: a single channel does not tell force and velocity at the contact");
   for (std::size_t i = 0; i < p.table.offset.size(); ++i)
     if (std::abs(p.table.offset[i]) > 0.005)
-      d.warnings.push_back(plucks.fitted[p.heard[i]].take + ": pitch " + in_digits(100 * p.table.offset[i]) + " % off that of the other takes: another tuning or another string");
+      d.warnings.push_back(plucks.fitted[p.heard[i]].take + ": pitch " + in_digits(100 * p.table.offset[i]) +
+                           " % off that of the other takes: another tuning or another string");
   const double off = p.law.best.law.fundamental_Hz / rig.string.fundamental_Hz - 1;
   if (std::abs(off) > 0.02) d.warnings.push_back("pitch: " + in_digits(100 * off) + " % from fundamental_Hz");
 }
 
 }  // namespace
 
-rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without) {
+rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provenance& from,
+                                                  const std::vector<std::string>& without) {
   rig_diagnosis d;
   d.title = rig.title.value_or(rig.file);
   const rosin::rig_values values = rosin::values_of(rig);
   for (const auto& line : values.assumed)
-    if (line.find("position") == std::string::npos && line.find("gain") == std::string::npos && line.find("force") == std::string::npos) d.assumed.push_back(line);
+    if (line.find("position") == std::string::npos && line.find("gain") == std::string::npos &&
+        line.find("force") == std::string::npos)
+      d.assumed.push_back(line);
   if (any_end_moves(rig)) d.warnings.push_back(rig.file + ": terminations: without forces on both ends these begin as rigid");
   const auto plucks = read_all(rig, from, d);
   if (!plucks) return rosin::failure{plucks.error()};
   const std::vector<std::string> declared = rig.model ? rig.model->physics : std::vector<std::string>{};
   const auto found = rosin::diagnose_pickups(plucks->fitted, plucks->held, {rig.string.fundamental_Hz, declared, without});
   if (!found) return rosin::failure{rig.file + ": " + found.error()};
-  if (found->judged.empty()) return rosin::failure{rig.file + ": no take that was set aside could be heard" + (found->warnings.empty() ? "" : "\n" + found->warnings.back())};
+  if (found->judged.empty())
+    return rosin::failure{rig.file + ": no take that was set aside could be heard" +
+                          (found->warnings.empty() ? "" : "\n" + found->warnings.back())};
   take_over(*found, values, *plucks, d);
   own_up(rig, *found, *plucks, d);
   return d;

@@ -9,7 +9,8 @@ namespace tool {
 
 rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from) {
   rig_plucks plucks = read_plucks(rig, from);
-  plucks_to_diagnose out{std::move(plucks.takes), std::move(plucks.held_out), guess_of(rig, values), options_for(physics_of(rig)), std::move(plucks.warnings)};
+  plucks_to_diagnose out{std::move(plucks.takes), std::move(plucks.held_out), guess_of(rig, values), options_for(physics_of(rig)),
+                         std::move(plucks.warnings)};
   if (out.takes.empty() && out.held.empty()) return rosin::failure{rig.file + ": no pluck to compare with"};
   if (out.takes.empty()) return rosin::failure{rig.file + ": every pluck is marked hold_out: none is left to fit"};
   if (out.held.empty() && out.takes.size() > 1) {  // the last of several: one that nothing is fitted to
@@ -21,17 +22,19 @@ rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin:
   return out;
 }
 
-rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from, std::vector<std::string>& warnings,
-                                               const std::vector<std::string>& without) {
+rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from,
+                                               std::vector<std::string>& warnings, const std::vector<std::string>& without) {
   const auto plucks = plucks_of(rig, values, from);
   if (!plucks) return rosin::failure{plucks.error()};
   warnings.insert(warnings.end(), plucks->warnings.begin(), plucks->warnings.end());
-  const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0, length = values.length_m ? values.length_m->value : 0;
+  const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0,
+               length = values.length_m ? values.length_m->value : 0;
   const double rate = plucks->takes.front().rate_Hz;
   std::vector<std::string> known = physics_of(rig);
   known.insert(known.end(), without.begin(), without.end());
   const auto catalogue = [=](const rosin::pluck_fit_result& fit) {
-    const rosin::string_facts facts{fit.value[rosin::pluck_layout::fundamental], rate, fit.limits.stop_Hz, impedance, length, fit.layout.takes()};
+    const rosin::string_facts facts{
+        fit.value[rosin::pluck_layout::fundamental], rate, fit.limits.stop_Hz, impedance, length, fit.layout.takes()};
     return rosin::catalogue_without(known, facts, fit.limits);
   };
   auto found = rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);

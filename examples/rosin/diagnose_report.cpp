@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The page of a diagnosis: a sentence, the picture of the mismatch, the picture after, the parameters, the runners-up, what was not done.
+// The page of a diagnosis: a sentence, the picture of the mismatch, the picture after, the parameters, the runners-up, what was
+// not done.
 //
 #include "diagnose_pickup_page.hpp"
 #include "digits.hpp"
@@ -20,7 +21,14 @@ std::string end_name(std::size_t c) { return c == 0 ? "near end" : "far end"; }
 
 /// The first four periods and what noise alone would leave, in mN over ms of the take.
 panel residual_panel(const residual_picture& r, const residual_series& s, std::size_t c, double half_height) {
-  panel p{std::string(c == 0 ? "(a) " : "(b) ") + end_name(c), "time in " + r.take + " / ms", "residual / mN", {}, {}, {}, std::pair{-half_height, half_height}, 220};
+  panel p{std::string(c == 0 ? "(a) " : "(b) ") + end_name(c),
+          "time in " + r.take + " / ms",
+          "residual / mN",
+          {},
+          {},
+          {},
+          std::pair{-half_height, half_height},
+          220};
   curve left{"recorded - model", {}, {}, ink(c), 1.2};
   const auto end = static_cast<std::size_t>(4 * r.rate_Hz / r.fundamental_Hz);
   for (std::size_t i = 0; i < std::min(end, s.force_N[c].size()); ++i) {
@@ -29,7 +37,9 @@ panel residual_panel(const residual_picture& r, const residual_series& s, std::s
   }
   const double from = 1e3 * r.before.begin_s, to = from + 4e3 / r.fundamental_Hz, two_sd = 2e3 * r.noise_N[c];
   p.x_range = std::pair{from, to};
-  p.curves = {left, {"noise, two standard deviations", {from, to}, {two_sd, two_sd}, colour::model, 1, 2}, {"", {from, to}, {-two_sd, -two_sd}, colour::model, 1, 2}};
+  p.curves = {left,
+              {"noise, two standard deviations", {from, to}, {two_sd, two_sd}, colour::model, 1, 2},
+              {"", {from, to}, {-two_sd, -two_sd}, colour::model, 1, 2}};
   return p;
 }
 
@@ -50,7 +60,8 @@ figure residual_figure(const residual_picture& r, const residual_series& s, cons
   figure f;
   for (std::size_t c = 0; c < 2; ++c) {
     panel p = residual_panel(r, s, c, half_height_of(r));
-    if (is_drawn(r, d) && (d.channel.empty() || d.channel == (c == 0 ? "near" : "far"))) p.heavy = {{1e3 * (*d.time_s)[0], 1e3 * (*d.time_s)[1]}};
+    if (is_drawn(r, d) && (d.channel.empty() || d.channel == (c == 0 ? "near" : "far")))
+      p.heavy = {{1e3 * (*d.time_s)[0], 1e3 * (*d.time_s)[1]}};
     f.panels.push_back(p);
   }
   f.share_axis();
@@ -63,7 +74,8 @@ std::vector<double> density(const std::vector<double>& x, double rate_Hz, std::s
   window = std::min(window, x.size());
   if (window < 8) return out;
   std::vector<double> hann(window);
-  for (std::size_t i = 0; i < window; ++i) hann[i] = 1 - std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(window));
+  for (std::size_t i = 0; i < window; ++i)
+    hann[i] = 1 - std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(window));
   double count = 0;
   for (std::size_t at = 0; at + window <= x.size(); at += window / 2, ++count)
     for (std::size_t k = 0; k < bins; ++k) {
@@ -76,7 +88,8 @@ std::vector<double> density(const std::vector<double>& x, double rate_Hz, std::s
   return out;
 }
 
-curve spectrum(const std::string& name, const std::vector<double>& x, const residual_picture& r, const char* colour, double width, int dash) {
+curve spectrum(const std::string& name, const std::vector<double>& x, const residual_picture& r, const char* colour, double width,
+               int dash) {
   curve c{name, {}, {}, colour, width, dash};
   const auto window = static_cast<std::size_t>(4 * r.rate_Hz / r.fundamental_Hz);
   const std::size_t bins = std::clamp<std::size_t>(window / 2, 64, 1024);
@@ -102,13 +115,16 @@ figure spectrum_figure(const residual_picture& r, const rig_diagnosis& d, bool c
     for (const auto& k : p.curves) top = std::max(top, *std::max_element(k.y.begin(), k.y.end()) + 8);
     p.y_range = std::pair{level - 15, top};
     p.x_range = std::pair{0.0, 1e-3 * r.limits.pass_Hz};
-    if (d.band_Hz && d.take == r.take && d.channel == (c == 0 ? "near" : "far")) p.heavy = {{1e-3 * (*d.band_Hz)[0], 1e-3 * std::min((*d.band_Hz)[1], r.limits.pass_Hz)}};
+    if (d.band_Hz && d.take == r.take && d.channel == (c == 0 ? "near" : "far"))
+      p.heavy = {{1e-3 * (*d.band_Hz)[0], 1e-3 * std::min((*d.band_Hz)[1], r.limits.pass_Hz)}};
     f.panels.push_back(p);
   }
   f.share_axis();
   const double seconds = static_cast<double>(r.before.force_N[0].size()) / r.rate_Hz;
-  f.caption = "Spectrum of what is left over the first " + in_digits(1e3 * seconds, "%.0f") + " ms (Hann windows of four periods), and the level of the noise.";
-  if (!f.panels[0].heavy.empty() || !f.panels[1].heavy.empty()) f.caption += " The bar marks the band that holds most of it where the residual is largest.";
+  f.caption = "Spectrum of what is left over the first " + in_digits(1e3 * seconds, "%.0f") +
+              " ms (Hann windows of four periods), and the level of the noise.";
+  if (!f.panels[0].heavy.empty() || !f.panels[1].heavy.empty())
+    f.caption += " The bar marks the band that holds most of it where the residual is largest.";
   return f;
 }
 
@@ -131,10 +147,13 @@ figure contact_figure(const contact_picture& p) {
   figure f;
   double most = 2.5 * p.noise;
   const auto add = [&](const rosin::contact_trace& trace, const char* title, const char* colour) {
-    panel one{title, "time in " + p.take + " / ms", sticks ? "of the rod's speed" : "coefficient of friction", {}, {}, {}, {}, 230};
+    panel one{title, "time in " + p.take + " / ms", sticks ? "of the rod's speed" : "coefficient of friction", {}, {}, {}, {},
+              230};
     const std::pair range{1e3 * p.shown_s[0], 1e3 * p.shown_s[1]};
-    one.curves = {left_curve(trace, p.shown_s, colour), {"noise, two standard deviations", {range.first, range.second}, {2 * p.noise, 2 * p.noise}, colour::model, 1, 2},
-                  {"", {range.first, range.second}, {-2 * p.noise, -2 * p.noise}, colour::model, 1, 2}};
+    one.curves = {
+        left_curve(trace, p.shown_s, colour),
+        {"noise, two standard deviations", {range.first, range.second}, {2 * p.noise, 2 * p.noise}, colour::model, 1, 2},
+        {"", {range.first, range.second}, {-2 * p.noise, -2 * p.noise}, colour::model, 1, 2}};
     std::vector<double> sizes;
     for (const double y : one.curves.front().y)
       if (std::isfinite(y)) sizes.push_back(std::abs(y));
@@ -147,8 +166,10 @@ figure contact_figure(const contact_picture& p) {
   if (!p.after.empty()) add(p.after.front(), "(b) corrected", colour::far);
   for (auto& one : f.panels) one.y_range = std::pair{-1.1 * most, 1.1 * most};
   f.share_axis();
-  f.caption = (sticks ? "Where the string sticks: its surface's velocity less the rod's, in " : "Where the string slips: the force over the normal force less what the law of friction has, in ") + p.take +
-              ", the stretch in which most of it is left by the contact as declared" + (p.after.empty() ? "." : ", and by the corrected one.");
+  f.caption = (sticks ? "Where the string sticks: its surface's velocity less the rod's, in "
+                      : "Where the string slips: the force over the normal force less what the law of friction has, in ") +
+              p.take + ", the stretch in which most of it is left by the contact as declared" +
+              (p.after.empty() ? "." : ", and by the corrected one.");
   return f;
 }
 
@@ -157,10 +178,16 @@ void add_figures(const rig_diagnosis& d, report_page& page) {
   if (d.contact && !d.contact->before.empty()) page.figures.push_back(contact_figure(*d.contact));
   if (!d.residual) return;
   const residual_picture& r = *d.residual;
-  const bool told = d.time_s && d.take == r.take, corrected = d.after && told && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) { return r.before.force_N != r.after.force_N; });
+  const bool told = d.time_s && d.take == r.take,
+             corrected = d.after && told && std::any_of(d.missing.begin(), d.missing.end(), [&](const auto&) {
+                           return r.before.force_N != r.after.force_N;
+                         });
   figure before = residual_figure(r, r.before, d);
-  before.caption = "What the declared model leaves of " + r.take + " " + r.stretch + ", both ends, up to " + in_digits(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
-  const std::string where = !told || is_drawn(r, d) ? r.bar : "It is largest later, at " + in_digits(1e3 * (*d.time_s)[0], "%.1f") + " ms in channel " + d.channel + r.bar.substr(r.bar.find(';'));
+  before.caption = "What the declared model leaves of " + r.take + " " + r.stretch + ", both ends, up to " +
+                   in_digits(1e-3 * r.limits.stop_Hz, "%.0f") + " kHz.";
+  const std::string where = !told || is_drawn(r, d) ? r.bar
+                                                    : "It is largest later, at " + in_digits(1e3 * (*d.time_s)[0], "%.1f") +
+                                                          " ms in channel " + d.channel + r.bar.substr(r.bar.find(';'));
   if (told) before.caption += " " + where + " " + in_digits(d.residual_over_noise) + " times the noise.";
   else before.caption += " It is within the noise: the plucks show no mismatch.";
   page.figures.push_back(before);
@@ -199,9 +226,12 @@ void add_fit(const rig_diagnosis& d, report_page& page) {
 void add_missing(const rig_diagnosis& d, report_page& page) {
   for (const auto& m : d.missing) {
     const std::string place = !m.end.empty() ? ", " + m.end + " end" : !m.channel.empty() ? ", channel " + m.channel : "";
-    page.result.emplace_back("missing: " + m.effect + place, m.probability > 0.9999 ? "probability above 0.9999" : "probability " + in_digits(m.probability, "%.4g"));
+    page.result.emplace_back("missing: " + m.effect + place, m.probability > 0.9999
+                                                                 ? "probability above 0.9999"
+                                                                 : "probability " + in_digits(m.probability, "%.4g"));
     for (const auto& p : m.parameters) page.result.emplace_back("    " + p.name, with_interval(p));
-    if (!m.indistinguishable_from.empty()) page.result.emplace_back("    cannot be told here from", list_of(m.indistinguishable_from, ""));
+    if (!m.indistinguishable_from.empty())
+      page.result.emplace_back("    cannot be told here from", list_of(m.indistinguishable_from, ""));
   }
 }
 
@@ -211,24 +241,40 @@ void add_ranking(const rig_diagnosis& d, report_page& page) {
     if (++shown > 8) break;
     std::string names;
     for (const auto& e : r.effects) names += (names.empty() ? "" : " + ") + e;
-    page.result.emplace_back((shown == 1 ? "likeliest: " : "runner-up: ") + (names.empty() ? "as declared" : names), "log10 of the evidence " + in_digits(r.log10_evidence, "%.4g"));
+    page.result.emplace_back((shown == 1 ? "likeliest: " : "runner-up: ") + (names.empty() ? "as declared" : names),
+                             "log10 of the evidence " + in_digits(r.log10_evidence, "%.4g"));
   }
-  if (d.ranking.size() > shown) page.notes.push_back(std::to_string(d.ranking.size()) + " models were tried; the likeliest are in the table, all of them in the JSON file.");
-  if (!d.pickup) page.notes.emplace_back("Effects of the strokes are judged on the strokes, the others on the plucks: evidence compares exactly only within one kind.");
+  if (d.ranking.size() > shown)
+    page.notes.push_back(std::to_string(d.ranking.size()) +
+                         " models were tried; the likeliest are in the table, all of them in the JSON file.");
+  if (!d.pickup)
+    page.notes.emplace_back(
+        "Effects of the strokes are judged on the strokes, the others on the plucks: evidence compares exactly only within one "
+        "kind.");
 }
 
 void add_limits(const rig_diagnosis& d, report_page& page) {
-  if (d.verdict == "unexplained") page.notes.emplace_back("What was found, if anything, does not bring the takes that were set aside down to the noise. The place of what is left stands above; nothing is named for it.");
+  if (d.verdict == "unexplained")
+    page.notes.emplace_back(
+        "What was found, if anything, does not bring the takes that were set aside down to the noise. The place of what is left "
+        "stands above; nothing is named for it.");
   for (const auto& m : d.missing)
     if (!m.indistinguishable_from.empty())
-      page.notes.push_back("These recordings cannot tell " + m.effect + " from " + list_of(m.indistinguishable_from, "") + ". Plucks at another place, longer or harder ones, may.");
-  if (d.held_out.size() == 1) page.notes.emplace_back("A single take was predicted; more plucks, at several places and of several strengths, would make the answer surer.");
-  if (d.metric != "pluck-residual") page.notes.emplace_back("The mismatch is between the strokes and the model; the plucks' figures show that these are right, which has to come first.");
+      page.notes.push_back("These recordings cannot tell " + m.effect + " from " + list_of(m.indistinguishable_from, "") +
+                           ". Plucks at another place, longer or harder ones, may.");
+  if (d.held_out.size() == 1)
+    page.notes.emplace_back(
+        "A single take was predicted; more plucks, at several places and of several strengths, would make the answer surer.");
+  if (d.metric != "pluck-residual")
+    page.notes.emplace_back(
+        "The mismatch is between the strokes and the model; the plucks' figures show that these are right, which has to come "
+        "first.");
 }
 
 }  // namespace
 
-std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d, const provenance& from) {
+std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d,
+                                                     const provenance& from) {
   report_page page;
   page.title = d.title + ": diagnosis";
   page.summary = sentence(d);

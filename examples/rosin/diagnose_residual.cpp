@@ -58,12 +58,15 @@ std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& p) {
 }
 
 residual_picture residuals_of(const rosin::odd_pluck& odd) {
-  const rosin::take_and_model &t = odd.ringing, &after = odd.moved && odd.elsewhere.model[0].size() == t.model[0].size() ? odd.elsewhere : t;
+  const rosin::take_and_model &t = odd.ringing,
+                              &after = odd.moved && odd.elsewhere.model[0].size() == t.model[0].size() ? odd.elsewhere : t;
   residual_picture out = picture_of(odd);
   out.stretch = "from a period before it goes astray on", out.bar = "The bar marks where it begins; over the whole take it is";
   const double from_s = std::max(t.begin_s, odd.time_s[0] - 1 / out.fundamental_Hz), lost_s = odd.lost ? odd.lost->time_s : 1e300;
-  const auto begin = static_cast<Eigen::Index>((from_s - t.begin_s) * out.rate_Hz), lag = odd.lost ? static_cast<Eigen::Index>(odd.lost->count) : 0;
-  const Eigen::Index count = std::min(t.recorded[0].size() - begin - lag, static_cast<Eigen::Index>(shown_periods * out.rate_Hz / out.fundamental_Hz));
+  const auto begin = static_cast<Eigen::Index>((from_s - t.begin_s) * out.rate_Hz),
+             lag = odd.lost ? static_cast<Eigen::Index>(odd.lost->count) : 0;
+  const Eigen::Index count =
+      std::min(t.recorded[0].size() - begin - lag, static_cast<Eigen::Index>(shown_periods * out.rate_Hz / out.fundamental_Hz));
   out.before.begin_s = out.after.begin_s = t.begin_s + static_cast<double>(begin) / out.rate_Hz;
   for (std::size_t c = 0; c < 2; ++c)
     for (Eigen::Index i = begin; i < begin + count; ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Plucks first: what do they say of string, ends, wire and sensors? Then the strokes, reconstructed with that: tension and contact.
+// Plucks first: what do they say of string, ends, wire and sensors? Then the strokes, reconstructed with that: tension and
+// contact.
 //
 #include "diagnose_parts.hpp"
 #include "digits.hpp"
@@ -10,11 +11,12 @@ namespace tool {
 
 namespace {
 
-constexpr double loaded_drift_fault = 3e-4;    ///< the same of strings with loads or yielding ends, whose noise is not told by the search
-constexpr double drift_fault = 5e-5;           ///< beside noise, by what else the two versions part; found on rigs of two other simulators
+constexpr double loaded_drift_fault =
+    3e-4;                             ///< the same of strings with loads or yielding ends, whose noise is not told by the search
+constexpr double drift_fault = 5e-5;  ///< beside noise, by what else the two versions part; found on rigs of two other simulators
 
-/// A converter that oversamples by four may smear a release over a quarter of its step: a variance of (T/4)^2 / 12 beside the d^2 (1/4 - 2/pi^2)
-/// of the release itself. What that makes of the duration d.
+/// A converter that oversamples by four may smear a release over a quarter of its step: a variance of (T/4)^2 / 12 beside the d^2
+/// (1/4 - 2/pi^2) of the release itself. What that makes of the duration d.
 double smear_of(double duration_s, double rate_Hz) {
   constexpr double pi = std::numbers::pi, share = 0.25 - 2 / (pi * pi);
   return std::pow(0.25 / rate_Hz, 2) / 12 / (2 * share * std::max(duration_s, 0.25 / rate_Hz));
@@ -34,7 +36,8 @@ missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, con
   if (last)
     for (const auto& id : p.alternatives) {
       const std::string name = bare(id);
-      if (name != e.name && std::find(m.indistinguishable_from.begin(), m.indistinguishable_from.end(), name) == m.indistinguishable_from.end())
+      if (name != e.name &&
+          std::find(m.indistinguishable_from.begin(), m.indistinguishable_from.end(), name) == m.indistinguishable_from.end())
         m.indistinguishable_from.push_back(name);
     }
   Eigen::Index at = p.data.layout.size();
@@ -45,11 +48,13 @@ missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, con
     const double v = rosin::to_physical(q, p.best.value[at]), sd = p.best.sd[at] * (q.logarithmic ? v : 1);
     if (q.late) continue;
     if (q.name == "amplitude") {
-      if (const std::size_t of_first = i - 1; of_first < 4) hum[of_first / 2] = std::hypot(hum[of_first / 2], v), hum_sd[of_first / 2] = sd;  // the fundamental in the first take
+      if (const std::size_t of_first = i - 1; of_first < 4)
+        hum[of_first / 2] = std::hypot(hum[of_first / 2], v), hum_sd[of_first / 2] = sd;  // the fundamental in the first take
       continue;
     }
     m.parameters.push_back(in_si(q.name, v, sd, values, p.best.value[0]));
-    if (auto& last_one = m.parameters.back(); q.name == "duration_s") last_one.sd = std::hypot(sd, smear_of(v, p.data.takes.front().rate_Hz));
+    if (auto& last_one = m.parameters.back(); q.name == "duration_s")
+      last_one.sd = std::hypot(sd, smear_of(v, p.data.takes.front().rate_Hz));
   }
   if (e.name == "mains-hum") {
     const std::size_t c = hum[1] > hum[0] ? 1 : 0;
@@ -72,12 +77,21 @@ void add_place(const rosin::acting_place& place, rig_diagnosis& d) {
   switch (place.on) {
     case rosin::acting::on_string:
       d.position = place.position;
-      d.acts = "on the string at " + in_digits(place.position, "%.4f") + " +- " + in_digits(2 * place.sd, "%.1g") + " of its length";
+      d.acts =
+          "on the string at " + in_digits(place.position, "%.4f") + " +- " + in_digits(2 * place.sd, "%.1g") + " of its length";
       break;
-    case rosin::acting::near_end: d.position = 0, d.acts = "at the near end"; break;
-    case rosin::acting::far_end: d.position = 1, d.acts = "at the far end"; break;
-    case rosin::acting::near_channel: d.acts = "in the near channel"; break;
-    case rosin::acting::far_channel: d.acts = "in the far channel"; break;
+    case rosin::acting::near_end:
+      d.position = 0, d.acts = "at the near end";
+      break;
+    case rosin::acting::far_end:
+      d.position = 1, d.acts = "at the far end";
+      break;
+    case rosin::acting::near_channel:
+      d.acts = "in the near channel";
+      break;
+    case rosin::acting::far_channel:
+      d.acts = "in the far channel";
+      break;
   }
 }
 
@@ -112,7 +126,8 @@ void add_calibration(const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
 
 /// Drift counts where it takes away most of what the two versions of the force part by, and a moved contact does not do as well.
 bool drifted(const rosin::tension_drift& t) {
-  return std::abs(t.relative) > 5 * t.sd && t.delta_after < 0.7 * t.delta_before && t.delta_after < 0.9 * t.delta_moved_contact && t.delta_before > 0.004;
+  return std::abs(t.relative) > 5 * t.sd && t.delta_after < 0.7 * t.delta_before && t.delta_after < 0.9 * t.delta_moved_contact &&
+         t.delta_before > 0.004;
 }
 
 void add_drift(const rosin::tension_drift& t, const std::vector<diagnosed_stroke>& strokes, bool plain_string, rig_diagnosis& d) {
@@ -132,10 +147,12 @@ void add_drift(const rosin::tension_drift& t, const std::vector<diagnosed_stroke
   d.metric = "force-consistency", d.before = t.delta_before, d.after = t.delta_after, d.noise_floor = std::sqrt(parting);
 }
 
-/// A stroke stretches a string, too: a rise in tension up to twice that of the strongest pluck needs no other cause once E A is found.
+/// A stroke stretches a string, too: a rise in tension up to twice that of the strongest pluck needs no other cause once E A is
+/// found.
 bool stretched_by_motion(const rosin::tension_drift& t, const rosin::pluck_diagnosis& p, const rosin::rig_values& values) {
   const auto& effects = p.best.effects;
-  const auto found = std::find_if(effects.begin(), effects.end(), [](const rosin::pluck_effect& e) { return e.name == "tension-modulation"; });
+  const auto found =
+      std::find_if(effects.begin(), effects.end(), [](const rosin::pluck_effect& e) { return e.name == "tension-modulation"; });
   if (found == effects.end() || !(t.relative > 0) || !values.impedance_Ns_m || !values.length_m) return false;
   const rosin::scene_plucks model(p.data.layout, p.data.guess.ac_coupled_Hz, effects);
   const double tension_N = values.impedance_Ns_m->value * 2 * values.length_m->value * p.best.value[0];
@@ -143,7 +160,8 @@ bool stretched_by_motion(const rosin::tension_drift& t, const rosin::pluck_diagn
   double most = 0;
   for (std::size_t i = 0; i < p.data.takes.size(); ++i)
     most = std::max(most, rosin::mean_stretch(model.string(p.best.value), p.best.value[model.position(i)],
-                                              std::exp(p.best.value[model.at(i, rosin::pluck_layout::strength)]) / tension_N, axial_N / (4 * tension_N), 1));
+                                              std::exp(p.best.value[model.at(i, rosin::pluck_layout::strength)]) / tension_N,
+                                              axial_N / (4 * tension_N), 1));
   return t.relative < 2 * most;
 }
 
@@ -152,18 +170,22 @@ void rank(rig_diagnosis& d) {
   double top = -1e300;
   for (const auto& r : d.ranking) top = std::max(top, r.log10_evidence);
   for (auto& r : d.ranking) r.log10_evidence = std::min(0.0, r.log10_evidence - top);
-  std::stable_sort(d.ranking.begin(), d.ranking.end(), [](const auto& a, const auto& b) { return a.log10_evidence > b.log10_evidence; });
+  std::stable_sort(d.ranking.begin(), d.ranking.end(),
+                   [](const auto& a, const auto& b) { return a.log10_evidence > b.log10_evidence; });
 }
 
 }  // namespace
 
-rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without, const std::function<void()>& step) {
+rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without,
+                                       const std::function<void()>& step) {
   rig_diagnosis d;
   d.title = rig.title.value_or(rig.file);
   const rosin::rig_values values = rosin::values_of(rig);
   d.assumed = values.assumed;
   for (const std::size_t end : {0U, 1U})
-    if (to_be_fitted(rig, end)) d.assumed.push_back(std::string{"terminations."} + (end == 0 ? "near" : "far") + " = \"fit\": begins as rigid; what moves there is named");
+    if (to_be_fitted(rig, end))
+      d.assumed.push_back(std::string{"terminations."} + (end == 0 ? "near" : "far") +
+                          " = \"fit\": begins as rigid; what moves there is named");
   const auto plucks = diagnose_plucks_of(rig, values, from, d.warnings, without);
   step();
   if (!plucks) return rosin::failure{plucks.error()};
@@ -186,7 +208,9 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     const rosin::tension_drift drift = drift_of(strokes, p);
     const double rise = drifted(drift) && knows("tension-drift") ? drift.relative : 0;
     if (rise != 0) {
-      if (stretched_by_motion(drift, p, values)) d.assumed.push_back("the strokes' tension is " + in_digits(100 * drift.relative, "%+.3g") + " % off the plucks': their motion stretches the string");
+      if (stretched_by_motion(drift, p, values))
+        d.assumed.push_back("the strokes' tension is " + in_digits(100 * drift.relative, "%+.3g") +
+                            " % off the plucks': their motion stretches the string");
       else add_drift(drift, strokes, plain_string, d);
       strokes = reconstruct_strokes(rig, values, p, rise, from, d.warnings);
     }
@@ -197,7 +221,8 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   rank(d);
   d.verdict = !p.explained || contact_open || !accounted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";
   if (d.verdict != "no-mismatch" && d.take.empty()) d.take = strokes.empty() ? p.data.takes.front().name : strokes.front().name;
-  if (d.verdict != "no-mismatch" && !(d.residual_over_noise > 0)) d.residual_over_noise = d.noise_floor > 0 ? d.before / d.noise_floor : 0;
+  if (d.verdict != "no-mismatch" && !(d.residual_over_noise > 0))
+    d.residual_over_noise = d.noise_floor > 0 ? d.before / d.noise_floor : 0;
   if (d.verdict == "no-mismatch") d.after.reset();
   return d;
 }

@@ -16,7 +16,7 @@ namespace rosin {
 struct pluck_diagnosis;
 struct odd_pluck;
 struct rattle;
-}
+}  // namespace rosin
 
 namespace tool {
 
@@ -31,7 +31,7 @@ struct diagnosed_value {
 /// One effect that the declared model lacks.
 struct missing_effect {
   std::string effect;
-  std::string end, channel;               ///< "near", "far" or empty
+  std::string end, channel;  ///< "near", "far" or empty
   std::optional<double> position;
   double probability = 1;
   std::vector<std::string> indistinguishable_from;
@@ -50,15 +50,17 @@ struct residual_series {
   std::array<std::vector<double>, 2> force_N;
 };
 
-/// What the declared model and the corrected one leave of the pluck in which they part most, over its first periods or where it goes astray.
+/// What the declared model and the corrected one leave of the pluck in which they part most, over its first periods or where it
+/// goes astray.
 struct residual_picture {
   std::string take;
   double rate_Hz = 0, fundamental_Hz = 0;
-  rosin::band limits;                             ///< all of it was seen through
-  std::array<double, 2> noise_N{};                ///< standard deviation in that band
+  rosin::band limits;               ///< all of it was seen through
+  std::array<double, 2> noise_N{};  ///< standard deviation in that band
   std::array<double, 2> noise_N_per_root_Hz{};
   residual_series before, after;
-  std::string stretch = "over its first periods", bar = "The bar marks where it is largest; over the stretch that was fitted it is";  ///< what the captions say
+  std::string stretch = "over its first periods",
+              bar = "The bar marks where it is largest; over the stretch that was fitted it is";  ///< what the captions say
 };
 
 /// One partial as a pickup heard it, and where the declared law and the corrected one have it.
@@ -78,9 +80,9 @@ struct pickup_picture {
 
 /// What the declared contact and the corrected one leave of the stroke in which it shows most.
 struct contact_picture {
-  std::string take, statistic;                 ///< "stick-fluctuation" or "friction-residual"
+  std::string take, statistic;                      ///< "stick-fluctuation" or "friction-residual"
   std::vector<rosin::contact_trace> before, after;  ///< one of each; after: none where nothing was found
-  std::array<double, 2> shown_s{};             ///< the stretch where most is left
+  std::array<double, 2> shown_s{};                  ///< the stretch where most is left
   double noise = 0;
 };
 
@@ -97,7 +99,9 @@ struct rig_diagnosis {
   std::string take, channel;
   std::optional<std::array<double, 2>> time_s, band_Hz;
   std::optional<double> position;
-  std::string acts;  ///< what is left of an unexplained mismatch: "on the string at 0.62 +- 0.01 of its length", "at the near end", "in the far channel"
+  /// what is left of an unexplained mismatch: "on the string at 0.62 +- 0.01 of its length", "at the near end", "in the far
+  /// channel"
+  std::string acts;
   double residual_over_noise = 0;
   std::optional<residual_picture> residual;
   std::optional<contact_picture> contact;
@@ -106,22 +110,27 @@ struct rig_diagnosis {
 };
 
 inline constexpr std::size_t diagnosis_steps = 4;
-/// `without`: effects that the catalogue is not to know, by name. `step` is called when plucks, strokes, tension have been seen to.
-[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {},
-                                                     const std::function<void()>& step = [] {});
+/// `without`: effects that the catalogue is not to know, by name. `step` is called when plucks, strokes, tension have been seen
+/// to.
+[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose(
+    const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {},
+    const std::function<void()>& step = [] {});
 /// The same for a rig that has not two force channels: plucks heard by pickups or microphones.
-[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {});
+[[nodiscard]] rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provenance& from,
+                                                                const std::vector<std::string>& without = {});
 /// What an effect means, with its values.
 [[nodiscard]] std::string statement_of(const missing_effect& m);
 /// A parameter of the fit in the names and units of the format; the doubt in nominal values joins the standard deviation.
-[[nodiscard]] diagnosed_value in_si(const std::string& name, double value, double sd, const rosin::rig_values& values, double fundamental_Hz);
+[[nodiscard]] diagnosed_value in_si(const std::string& name, double value, double sd, const rosin::rig_values& values,
+                                    double fundamental_Hz);
 [[nodiscard]] std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& plucks);
 [[nodiscard]] residual_picture residuals_of(const rosin::odd_pluck& odd);
 /// The same of one that met an obstacle.
 [[nodiscard]] residual_picture residuals_of(const rosin::odd_pluck& odd, const rosin::rattle& rattle);
 [[nodiscard]] json to_json(const rig_diagnosis& d, const provenance& from);
 /// A page: the sentence, what is left before and after, parameters, runners-up, what could not be done. Needs gnuplot.
-[[nodiscard]] std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d, const provenance& from);
+[[nodiscard]] std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d,
+                                                                   const provenance& from);
 [[nodiscard]] std::string sentence(const rig_diagnosis& d);
 
 /// What the plucks that a rig file announces can tell apart, whether they have been made or not.

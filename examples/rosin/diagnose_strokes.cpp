@@ -65,8 +65,10 @@ void add_means_and_doubts(diagnosed_stroke& s, const rosin::band& limits) {
 
 }  // namespace
 
-std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, double tension_drift,
-                                                  provenance& from, std::vector<std::string>& warnings, const std::string& only, std::optional<rosin::band> band) {
+std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values,
+                                                  const rosin::pluck_diagnosis& plucks, double tension_drift, provenance& from,
+                                                  std::vector<std::string>& warnings, const std::string& only,
+                                                  std::optional<rosin::band> band) {
   const rosin::pluck_scene scene = rosin::scene_of(plucks.data, plucks.best);
   std::vector<diagnosed_stroke> out;
   for (const auto& take : rig.takes) {
@@ -80,7 +82,8 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
     }
     const double rate = read->signals.sample_rate_Hz;
     const rosin::band limits = band.value_or(rosin::band{0.30 * rate, 0.45 * rate});
-    diagnosed_stroke s = recorded_stroke(take, read->signals, rosin::at_tension(calibration_with(plucks, *position, values), tension_drift), plucks, limits);
+    diagnosed_stroke s = recorded_stroke(
+        take, read->signals, rosin::at_tension(calibration_with(plucks, *position, values), tension_drift), plucks, limits);
     s.motion = motion_of(s, scene, limits);
     if (s.motion.known.end <= s.motion.known.begin + 500) {
       warnings.push_back(take.name + ": left out: too short");
@@ -109,7 +112,8 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
 
 double parting_by_noise(const diagnosed_stroke& s) {
   const auto known = Eigen::Map<const Eigen::ArrayXd>(s.mean_N.data(), static_cast<Eigen::Index>(s.mean_N.size()))
-                         .segment(static_cast<Eigen::Index>(s.motion.known.begin), static_cast<Eigen::Index>(s.motion.known.end - s.motion.known.begin));
+                         .segment(static_cast<Eigen::Index>(s.motion.known.begin),
+                                  static_cast<Eigen::Index>(s.motion.known.end - s.motion.known.begin));
   // The versions part by twice what their mean is off; the force's mean does not count.
   return std::sqrt(2.0) * s.sd.force_noise_N / std::sqrt(std::max(1e-300, (known - known.mean()).square().mean()));
 }
@@ -122,7 +126,8 @@ rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, cons
     std::vector<std::array<std::vector<double>, 2>> moved;
     for (const auto& s : strokes) moved.push_back(rosin::moved_ends(scene, s.force_N, limits, rate));
     return rosin::search_tension_drift(strokes.size(), [&](std::size_t i, double relative) {
-      const auto motion = rosin::reconstruct_loaded(scene, rosin::at_tension(strokes[i].calibration, relative).at, strokes[i].force_N, moved[i], limits, rate);
+      const auto motion = rosin::reconstruct_loaded(scene, rosin::at_tension(strokes[i].calibration, relative).at,
+                                                    strokes[i].force_N, moved[i], limits, rate);
       return rosin::consistency_delta(motion.force_near_N, motion.force_far_N);
     });
   }
@@ -156,20 +161,23 @@ rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_strok
   return t;
 }
 
-rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model) {
+rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
+                                   const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model) {
   std::vector<rosin::contact_take> takes;
   for (const auto& s : strokes) takes.push_back(contact_take_of(rig, s, plucks));
   return rosin::contact_hypotheses(takes, model);
 }
 
-std::optional<double> see_as_wide(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, double width_m, diagnosed_stroke& s) {
+std::optional<double> see_as_wide(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, double width_m,
+                                  diagnosed_stroke& s) {
   rosin::contact_take take = contact_take_of(rig, s, plucks);
   rosin::contact_model model = declared_contact(rig);
   if (take.length_m > 0) model.width_s = width_m / take.length_m * (take.delay_s[0] + take.delay_s[1]);
   const auto one = rosin::as_one_contact({take}, model);
   if (!one) return std::nullopt;
   auto& m = s.motion;
-  const auto centre_on = [](std::vector<double>& a, std::vector<double>& b, const std::vector<double>& mean) {  // what they part by stays
+  const auto centre_on = [](std::vector<double>& a, std::vector<double>& b,
+                            const std::vector<double>& mean) {  // what they part by stays
     for (std::size_t i = 0; i < mean.size(); ++i) {
       const double apart = 0.5 * (a[i] - b[i]);
       a[i] = mean[i] + apart, b[i] = mean[i] - apart;

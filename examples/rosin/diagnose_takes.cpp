@@ -9,8 +9,10 @@ namespace tool {
 
 namespace {
 
-/// Rms residual / rms recorded of a take with and without what lies between two instants (and what a band's filter makes of them).
-std::array<double, 2> with_and_without(const rosin::pluck_diagnosis& p, const rosin::pluck_take& take, double from_s, double to_s) {
+/// Rms residual / rms recorded of a take with and without what lies between two instants (and what a band's filter makes of
+/// them).
+std::array<double, 2> with_and_without(const rosin::pluck_diagnosis& p, const rosin::pluck_take& take, double from_s,
+                                       double to_s) {
   constexpr double blurred = 80;
   const rosin::take_and_model t = rosin::detail::compare_late(p, take);
   double recorded = 0, off = 0, inside = 0;
@@ -27,8 +29,8 @@ missing_effect lost(const std::string& take, const std::string& channel, double 
   missing_effect m;
   m.effect = "dropouts", m.channel = channel;
   m.parameters = {{"samples", samples, 0}, {"time_s", time_s, time_sd_s}};
-  m.statement = take + (channel.empty() ? "" : ", channel " + channel) + ": " + in_digits(samples, "%.0f") + " samples were lost, from " +
-                in_digits(time_s, "%.4f") + " s on.";
+  m.statement = take + (channel.empty() ? "" : ", channel " + channel) + ": " + in_digits(samples, "%.0f") +
+                " samples were lost, from " + in_digits(time_s, "%.4f") + " s on.";
   return m;
 }
 
@@ -36,8 +38,8 @@ missing_effect made_at(const std::string& take, double position, double sd, doub
   missing_effect m;
   m.effect = "pluck-position", m.position = position;
   m.parameters = {{"position", position, sd}};
-  m.statement = (take.empty() ? std::string{"The string"} : take + ": the string") + " was plucked at " + in_digits(position, "%.4f") + " of its length, not at " +
-                in_digits(declared, "%.4f") + ".";
+  m.statement = (take.empty() ? std::string{"The string"} : take + ": the string") + " was plucked at " +
+                in_digits(position, "%.4f") + " of its length, not at " + in_digits(declared, "%.4f") + ".";
   return m;
 }
 
@@ -62,17 +64,20 @@ std::string contradiction(const rosin::odd_pluck& odd) {
   for (const rosin::pluck_take& take : odd.also) names += ", " + take.name;
   const std::string out = names + (odd.also.empty() ? " contradicts" : " contradict") + " the other plucks: ";
   if (odd.lost) return out + in_digits(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
-  const double others_Hz = odd.others.best.value[rosin::pluck_layout::fundamental], apart = odd.own_fundamental_Hz / others_Hz - 1;
+  const double others_Hz = odd.others.best.value[rosin::pluck_layout::fundamental],
+               apart = odd.own_fundamental_Hz / others_Hz - 1;
   const std::string strongest = odd.strongest ? "; it is the strongest: something that only large motion meets?" : "";
   if (odd.moved) return out + "it was made elsewhere";
   if (odd.own_fundamental_Hz > 0 && std::abs(apart) > 1e-5)
-    return out + "by itself it rings at " + in_digits(odd.own_fundamental_Hz, "%.6g") + " Hz, the others at " + in_digits(others_Hz, "%.6g") + " Hz; another tuning or another string?" + strongest;
+    return out + "by itself it rings at " + in_digits(odd.own_fundamental_Hz, "%.6g") + " Hz, the others at " +
+           in_digits(others_Hz, "%.6g") + " Hz; another tuning or another string?" + strongest;
   return out + "off from " + in_digits(odd.time_s[0], "%.4f") + " s on" + strongest;
 }
 
 }  // namespace
 
-bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const std::function<bool(const char*)>& knows, rig_diagnosis& d) {
+bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const std::function<bool(const char*)>& knows,
+             rig_diagnosis& d) {
   const bool lost_some = odd.lost && knows("dropouts"), moved = odd.moved && knows("pluck-position");
   d.warnings.push_back(contradiction(odd));
   d.take = odd.take.name, d.channel.clear(), d.time_s = odd.time_s, d.band_Hz.reset(), d.position.reset(), d.acts.clear();
@@ -83,10 +88,12 @@ bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const
   if (lost_some) add_cause(lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s), d);
   if (moved) add_cause(made_at(odd.take.name, odd.moved->position, odd.moved->sd, odd.take.position), d);
   if (lost_some || moved) return true;
-  const auto rattle = knows("rattle") && values.impedance_Ns_m ? rosin::find_rattle(odd, values.impedance_Ns_m->value) : std::nullopt;
+  const auto rattle =
+      knows("rattle") && values.impedance_Ns_m ? rosin::find_rattle(odd, values.impedance_Ns_m->value) : std::nullopt;
   if (!rattle) return false;
   d.position = rattle->place.position, d.time_s = {rattle->first_s, rattle->first_s + odd.time_s[1] - odd.time_s[0]};
-  d.before = rattle->before, d.after = rattle->after, d.noise_floor = rattle->floor, d.residual_over_noise = rattle->before / rattle->floor;
+  d.before = rattle->before, d.after = rattle->after, d.noise_floor = rattle->floor,
+  d.residual_over_noise = rattle->before / rattle->floor;
   d.residual = residuals_of(odd, *rattle);
   add_cause(met(*rattle, values), d);
   return true;
@@ -99,13 +106,20 @@ void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& p, prove
     if (!read) continue;
     for (const rosin::finding& f : read->check.findings) {
       if (f.kind != "dropouts" || (f.channel != "near" && f.channel != "far")) continue;
-      d.missing.push_back(lost(take.name, f.channel, std::round((f.end_s - f.start_s) * read->signals.sample_rate_Hz), f.start_s));
+      d.missing.push_back(
+          lost(take.name, f.channel, std::round((f.end_s - f.start_s) * read->signals.sample_rate_Hz), f.start_s));
       if (!d.take.empty()) continue;
       d.take = take.name, d.channel = f.channel, d.time_s = {f.start_s, f.end_s};
       d.after = d.before;
       if (take.kind != rosin::take_kind::pluck || !position || !take.force_N) continue;
-      const auto [before, after] = with_and_without(p, {take.name, read->signals.sample_rate_Hz, {read->signals.near_N(), read->signals.far_N()}, *take.force_N,
-                                                        rosin::force_tolerance_of(take), *position}, f.start_s, f.end_s);
+      const auto [before, after] = with_and_without(p,
+                                                    {take.name,
+                                                     read->signals.sample_rate_Hz,
+                                                     {read->signals.near_N(), read->signals.far_N()},
+                                                     *take.force_N,
+                                                     rosin::force_tolerance_of(take),
+                                                     *position},
+                                                    f.start_s, f.end_s);
       d.before = before, d.after = after, d.held_out = {take.name};
       d.residual_over_noise = d.noise_floor > 0 ? before / d.noise_floor : 0;
     }

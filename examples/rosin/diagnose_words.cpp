@@ -40,8 +40,19 @@ std::string value_of(const missing_effect& m, const std::string& name, double fa
 
 std::array<double, 2> interval_of(const diagnosed_value& v) {
   static const std::set<std::string> shares{"position", "clamping"};
-  static const std::set<std::string> positive{"mass_kg", "resistance_Ns_m", "frequency_Hz", "q", "cutoff_Hz", "corner_Hz", "duration_s", "width_m", "axial_stiffness_N",
-                                              "bending_stiffness_Nm2", "bristle_stiffness_N_m", "speed_ratio", "impedance_ratio"};
+  static const std::set<std::string> positive{"mass_kg",
+                                              "resistance_Ns_m",
+                                              "frequency_Hz",
+                                              "q",
+                                              "cutoff_Hz",
+                                              "corner_Hz",
+                                              "duration_s",
+                                              "width_m",
+                                              "axial_stiffness_N",
+                                              "bending_stiffness_Nm2",
+                                              "bristle_stiffness_N_m",
+                                              "speed_ratio",
+                                              "impedance_ratio"};
   constexpr double all = std::numeric_limits<double>::infinity();
   const bool share = shares.contains(v.name);
   const double least = v.value >= 0 && (share || positive.contains(v.name)) ? 0 : -all, most = v.value <= 1 && share ? 1 : all;
@@ -50,17 +61,21 @@ std::array<double, 2> interval_of(const diagnosed_value& v) {
 
 diagnosed_value in_si(const std::string& name, double v, double sd, const rosin::rig_values& values, double f0) {
   const nominal_errors e = errors_of(values);
-  const auto with = [&](const char* as, double x, double random, double relative) { return diagnosed_value{as, x, std::hypot(random, relative * x)}; };
+  const auto with = [&](const char* as, double x, double random, double relative) {
+    return diagnosed_value{as, x, std::hypot(random, relative * x)};
+  };
   if (name == "per_mass_per_kg") return with("mass_kg", 1 / v, sd / (v * v), e.impedance);
   if (name == "conductance_m_sN") return with("resistance_Ns_m", 1 / v, sd / (v * v), e.impedance);
   if (name == "inharmonicity" && values.impedance_Ns_m && values.length_m) {
-    const double L = values.length_m->value, per = values.impedance_Ns_m->value * 2 * L * f0 * L * L / (std::numbers::pi * std::numbers::pi);
+    const double L = values.length_m->value,
+                 per = values.impedance_Ns_m->value * 2 * L * f0 * L * L / (std::numbers::pi * std::numbers::pi);
     return with("bending_stiffness_Nm2", v * per, sd * per, e.stiffness);
   }
   if (name == "mass_kg" || name == "resistance_Ns_m") return with(name.c_str(), v, sd, e.impedance);
   if (name == "axial_stiffness_N") return with(name.c_str(), v, sd, e.axial);
   if (name == "sensed_axial_stiffness_N") return with(name.c_str(), v, sd, e.sensed);
-  if (name == "clamping") {  // what shows is flat where nothing turns, t^2/2 + t^3/3 with t = 1 - clamping: the interval is one of that
+  if (name ==
+      "clamping") {  // what shows is flat where nothing turns, t^2/2 + t^3/3 with t = 1 - clamping: the interval is one of that
     const double t = 1 - v, far = t * t * (0.5 + t / 3) + 1.96 * sd * t * (1 + t);
     double low = std::max(t, std::sqrt(2 * far));
     for (int i = 0; i < 30; ++i) low -= (low * low * (0.5 + low / 3) - far) / (low * (1 + low) + 1e-12);
@@ -74,39 +89,62 @@ diagnosed_value in_si(const std::string& name, double v, double sd, const rosin:
 std::string statement_of(const missing_effect& m) {
   const auto v = [&](const char* name, double factor = 1, const char* form = "%.3g") { return value_of(m, name, factor, form); };
   if (m.effect == "bending-stiffness") return "The string is stiff: B = " + v("bending_stiffness_Nm2") + " N m^2.";
-  if (m.effect == "frequency-dependent-loss") return "Loss grows with frequency: 1/Q rises by " + v("loss_internal_s", 1e3) + " per kHz.";
+  if (m.effect == "frequency-dependent-loss")
+    return "Loss grows with frequency: 1/Q rises by " + v("loss_internal_s", 1e3) + " per kHz.";
   if (m.effect == "air-loss") return "Loss falls with frequency as that of the air does.";
   if (m.effect == "tension-modulation") return "Large motion stretches the string: E A = " + v("axial_stiffness_N") + " N.";
-  if (m.effect == "second-polarization") return "The string also moves across the sensors' plane, tuned " + v("detuning", 1e3) + " per mille apart.";
-  if (m.effect == "point-mass") return "A mass of " + v("mass_kg", 1e6) + " mg sits on the string at " + v("position", 1, "%.4f") + " of its length.";
-  if (m.effect == "point-damper") return "Something damps the string at " + v("position", 1, "%.4f") + " of its length: " + v("resistance_Ns_m") + " N s/m.";
+  if (m.effect == "second-polarization")
+    return "The string also moves across the sensors' plane, tuned " + v("detuning", 1e3) + " per mille apart.";
+  if (m.effect == "point-mass")
+    return "A mass of " + v("mass_kg", 1e6) + " mg sits on the string at " + v("position", 1, "%.4f") + " of its length.";
+  if (m.effect == "point-damper")
+    return "Something damps the string at " + v("position", 1, "%.4f") + " of its length: " + v("resistance_Ns_m") + " N s/m.";
   if (m.effect == "support-resonance")
-    return "The " + m.end + " termination is not rigid: it resonates at " + v("frequency_Hz", 1e-3, "%.4g") + " kHz (Q " + v("q") + ", " + v("mass_kg", 1e3) + " g).";
-  if (m.effect == "sympathetic-string") return "Another string rings along at the " + m.end + " termination: " + v("frequency_Hz", 1, "%.5g") + " Hz (Q " + v("q") + ").";
+    return "The " + m.end + " termination is not rigid: it resonates at " + v("frequency_Hz", 1e-3, "%.4g") + " kHz (Q " +
+           v("q") + ", " + v("mass_kg", 1e3) + " g).";
+  if (m.effect == "sympathetic-string")
+    return "Another string rings along at the " + m.end + " termination: " + v("frequency_Hz", 1, "%.5g") + " Hz (Q " + v("q") +
+           ").";
   if (m.effect == "resistive-end") return "The " + m.end + " termination takes energy: " + v("resistance_Ns_m") + " N s/m.";
   if (m.effect == "massive-end") return "The " + m.end + " termination moves like a mass of " + v("mass_kg", 1e3) + " g.";
-  if (m.effect == "clamped-end") return (m.end.empty() ? "Both terminations hold" : "The " + m.end + " termination holds") + " the string against turning: clamped to " + v("clamping", 100) + " %.";
+  if (m.effect == "clamped-end")
+    return (m.end.empty() ? "Both terminations hold" : "The " + m.end + " termination holds") +
+           " the string against turning: clamped to " + v("clamping", 100) + " %.";
   if (m.effect == "ac-coupling") return "Both channels are AC coupled at " + v("cutoff_Hz") + " Hz.";
-  if (m.effect == "sensor-resonance") return "The " + m.channel + " transducer itself resonates at " + v("frequency_Hz", 1e-3, "%.4g") + " kHz (Q " + v("q") + ").";
+  if (m.effect == "sensor-resonance")
+    return "The " + m.channel + " transducer itself resonates at " + v("frequency_Hz", 1e-3, "%.4g") + " kHz (Q " + v("q") + ").";
   if (m.effect == "channel-skew") {
-    const bool late = std::none_of(m.parameters.begin(), m.parameters.end(), [](const auto& p) { return p.name == "skew_s" && p.value < 0; });
-    return "The far channel comes " + v("skew_s", late ? 1e6 : -1e6) + (late ? " us late" : " us early") + " against the near one.";
+    const bool late =
+        std::none_of(m.parameters.begin(), m.parameters.end(), [](const auto& p) { return p.name == "skew_s" && p.value < 0; });
+    return "The far channel comes " + v("skew_s", late ? 1e6 : -1e6) + (late ? " us late" : " us early") +
+           " against the near one.";
   }
   if (m.effect == "channel-crosstalk") return v("fraction", 100) + " % of each channel leaks into the other.";
   if (m.effect == "sensor-nonlinearity") return "The " + m.channel + " channel is curved: f + " + v("quadratic_per_N") + " f^2.";
-  if (m.effect == "phantom-partials") return "The " + m.channel + " transducer feels the string's tension, too: " + v("sensed_axial_stiffness_N") + " N per unit of strain.";
+  if (m.effect == "phantom-partials")
+    return "The " + m.channel + " transducer feels the string's tension, too: " + v("sensed_axial_stiffness_N") +
+           " N per unit of strain.";
   if (m.effect == "clock-drift") return "The far channel's clock is " + v("relative", 1e6) + " ppm fast against the near one's.";
   if (m.effect == "mains-hum") return "Mains hum at " + v("frequency_Hz", 1, "%.4g") + " Hz, " + v("amplitude_N", 1e3) + " mN.";
   if (m.effect == "slow-release") return "The wire lets go over " + v("duration_s", 1e6) + " us.";
   if (m.effect == "finite-pluck-width") return "The wire grips the string over " + v("width_m", 1e3) + " mm.";
-  if (m.effect == "torsion") return "Torsion is not as declared: " + v("speed_ratio") + " times as fast, " + v("impedance_ratio") + " times the impedance, Q " + v("q") + ".";
-  if (m.effect == "rod-resonance") return "The rod gives way: it resonates at " + v("frequency_Hz", 1e-3, "%.4g") + " kHz (Q " + v("q") + ", " + v("mass_kg", 1e3) + " g).";
+  if (m.effect == "torsion")
+    return "Torsion is not as declared: " + v("speed_ratio") + " times as fast, " + v("impedance_ratio") +
+           " times the impedance, Q " + v("q") + ".";
+  if (m.effect == "rod-resonance")
+    return "The rod gives way: it resonates at " + v("frequency_Hz", 1e-3, "%.4g") + " kHz (Q " + v("q") + ", " +
+           v("mass_kg", 1e3) + " g).";
   if (m.effect == "finite-contact-width") return "The bow touches the string over " + v("width_m", 1e3) + " mm.";
-  if (m.effect == "speed-ripple") return "The speed of the bow ripples at " + v("frequency_Hz", 1, "%.4g") + " Hz by " + v("relative", 100) + " %.";
-  if (m.effect == "normal-force-ripple") return "The normal force ripples at " + v("frequency_Hz", 1, "%.4g") + " Hz by " + v("relative", 100) + " %.";
+  if (m.effect == "speed-ripple")
+    return "The speed of the bow ripples at " + v("frequency_Hz", 1, "%.4g") + " Hz by " + v("relative", 100) + " %.";
+  if (m.effect == "normal-force-ripple")
+    return "The normal force ripples at " + v("frequency_Hz", 1, "%.4g") + " Hz by " + v("relative", 100) + " %.";
   if (m.effect == "thermal-friction") return "Friction follows the temperature of the contact, not the sliding speed.";
-  if (m.effect == "elasto-plastic-friction") return "The contact yields elastically before it slides: " + v("bristle_stiffness_N_m") + " N/m.";
-  if (m.effect == "rattle") return "The string meets an obstacle at " + v("position", 1, "%.4f") + " of its length, " + v("gap_m", 1e3) + " mm from where it rests.";
+  if (m.effect == "elasto-plastic-friction")
+    return "The contact yields elastically before it slides: " + v("bristle_stiffness_N_m") + " N/m.";
+  if (m.effect == "rattle")
+    return "The string meets an obstacle at " + v("position", 1, "%.4f") + " of its length, " + v("gap_m", 1e3) +
+           " mm from where it rests.";
   if (m.effect == "creep") return "The string creeps while it sticks.";
   return "Missing: " + m.effect + ".";
 }
@@ -116,8 +154,13 @@ std::string sentence(const rig_diagnosis& d) {
   std::string out;
   for (const auto& m : d.missing) out += (out.empty() ? "" : " ") + m.statement;
   if (d.verdict == "explained") return out;
-  const std::string where = d.take.empty() ? "" : " It shows in " + d.take + (d.channel.empty() ? "" : ", channel " + d.channel) + (d.acts.empty() ? "." : "; both ends agree that it acts " + d.acts + ".");
-  return (out.empty() ? "" : out + " ") + std::string(out.empty() ? "Recordings and simulation differ, and nothing in the catalogue accounts for it." : "That does not account for all of it.") + where;
+  const std::string where = d.take.empty() ? ""
+                                           : " It shows in " + d.take + (d.channel.empty() ? "" : ", channel " + d.channel) +
+                                                 (d.acts.empty() ? "." : "; both ends agree that it acts " + d.acts + ".");
+  return (out.empty() ? "" : out + " ") +
+         std::string(out.empty() ? "Recordings and simulation differ, and nothing in the catalogue accounts for it."
+                                 : "That does not account for all of it.") +
+         where;
 }
 
 }  // namespace tool

@@ -17,7 +17,9 @@ std::vector<std::int32_t> lead_in(const std::vector<std::int32_t>& take, std::si
   const auto count = static_cast<std::size_t>(rate_Hz);
   std::vector<std::int32_t> out(count * channels);
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t c = 0; c < channels; ++c) out[i * channels + c] = static_cast<std::int32_t>(std::lround(take[c] * (static_cast<double>(i) / static_cast<double>(count))));
+    for (std::size_t c = 0; c < channels; ++c)
+      out[i * channels + c] =
+          static_cast<std::int32_t>(std::lround(take[c] * (static_cast<double>(i) / static_cast<double>(count))));
   return out;
 }
 
@@ -52,15 +54,18 @@ public:
 
   digitiser(fake_player& from, const rosin::byte_link& to, const fake_rig_options& given)
       : from_{from}, to_{to}, given_{given}, block_(static_cast<std::size_t>(given.packet_frames * from.channels())),
-        encoder_{{.stream = static_cast<std::uint8_t>(::getpid()), .channels = static_cast<std::uint8_t>(from.channels()),
-                  .bits = static_cast<std::uint8_t>(from.bits()), .rate_mHz = static_cast<std::uint32_t>(std::lround(1000 * from.rate_Hz()))}} {
+        encoder_{{.stream = static_cast<std::uint8_t>(::getpid()),
+                  .channels = static_cast<std::uint8_t>(from.channels()),
+                  .bits = static_cast<std::uint8_t>(from.bits()),
+                  .rate_mHz = static_cast<std::uint32_t>(std::lround(1000 * from.rate_Hz()))}} {
     ::fcntl(to.fd(), F_SETFL, ::fcntl(to.fd(), F_GETFL) | O_NONBLOCK);
   }
   void send_until(double time_s) {
     while (static_cast<double>(sent_) < time_s * from_.rate_Hz()) {
       from_.next(block_);
       sent_ += static_cast<std::uint64_t>(given_.packet_frames);
-      std::string packet{reinterpret_cast<const char*>(encoder_.data()), encoder_.encode(block_.data(), static_cast<std::uint16_t>(given_.packet_frames))};
+      std::string packet{reinterpret_cast<const char*>(encoder_.data()),
+                         encoder_.encode(block_.data(), static_cast<std::uint16_t>(given_.packet_frames))};
       harm(packet);
       put(packet);
     }
@@ -75,7 +80,8 @@ private:
     if (kind == 2) packet[packet.size() / 3] = static_cast<char>(packet[packet.size() / 3] ^ 0x10);
     if (kind == 3) packet += packet;
   }
-  /// A line that stands still for a moment gets what it missed; where nobody reads, nothing but the packet that was begun is kept.
+  /// A line that stands still for a moment gets what it missed; where nobody reads, nothing but the packet that was begun is
+  /// kept.
   void put(const std::string& packet) {
     const auto now = std::chrono::steady_clock::now();
     if (rest_.empty()) progress_ = now;
@@ -127,7 +133,8 @@ private:
 class rehearsal {
 public:
   rehearsal(fake_player player, std::unique_ptr<named_line> line, std::unique_ptr<named_line> sled, const fake_rig_options& given)
-      : player_{std::move(player)}, line_{std::move(line)}, sled_line_{std::move(sled)}, converter_{player_, line_->device(), given} {}
+      : player_{std::move(player)}, line_{std::move(line)}, sled_line_{std::move(sled)}, converter_{player_, line_->device(),
+                                                                                                    given} {}
 
   [[nodiscard]] std::optional<rosin::failure> until(double time_s) {
     while (const auto name = fingers_.next())
@@ -191,12 +198,15 @@ rosin::outcome<fake_player> fake_player::load(const fake_rig_options& given) {
     const auto read = rosin::read_audio(folder->rig.path_of(t.file));
     if (!read) return rosin::failure{read.error()};
     const int bits = read->float_format || read->bits > 24 ? 32 : read->bits > 16 ? 24 : 16;
-    if (out.takes_.empty()) out.rate_Hz_ = read->sample_rate_Hz, out.channels_ = static_cast<int>(read->channels.size()), out.bits_ = bits;
-    if (out.rate_Hz_ != read->sample_rate_Hz || out.bits_ != bits) return rosin::failure{read->file + ": its rate or width is not that of the first take"};
+    if (out.takes_.empty())
+      out.rate_Hz_ = read->sample_rate_Hz, out.channels_ = static_cast<int>(read->channels.size()), out.bits_ = bits;
+    if (out.rate_Hz_ != read->sample_rate_Hz || out.bits_ != bits)
+      return rosin::failure{read->file + ": its rate or width is not that of the first take"};
     frames samples;
     const double top = std::ldexp(1.0, bits - 1);
     for (std::size_t i = 0; i < read->frames(); ++i)
-      for (const auto& c : read->channels) samples.push_back(static_cast<std::int32_t>(std::clamp(std::nearbyint(c[i] * top), -top, top - 1)));
+      for (const auto& c : read->channels)
+        samples.push_back(static_cast<std::int32_t>(std::clamp(std::nearbyint(c[i] * top), -top, top - 1)));
     if (t.kind == rosin::take_kind::quiet) out.idle_ = samples;
     out.takes_.push_back({t.name, t.kind == rosin::take_kind::bow, std::move(samples)});
   }
@@ -236,12 +246,16 @@ void fake_player::next(std::span<std::int32_t> interleaved) {
 
 void add_fake_rig(CLI::App& app, exit_code& result) {
   auto given = std::make_shared<fake_rig_options>();
-  CLI::App* command = app.add_subcommand("fake-rig", "Plays recordings as if a digitiser sent them, and a sled besides: a rehearsal");
+  CLI::App* command =
+      app.add_subcommand("fake-rig", "Plays recordings as if a digitiser sent them, and a sled besides: a rehearsal");
   command->add_option("RIG", given->rig, "Folder of the rig that is played")->required();
   command->add_option("--line", given->line, "Name for the serial line on which the frames come")->required()->type_name("PATH");
-  command->add_option("--sled", given->sled, "Name for the serial line of the sled; each stroke plays the next bowed take")->type_name("PATH");
+  command->add_option("--sled", given->sled, "Name for the serial line of the sled; each stroke plays the next bowed take")
+      ->type_name("PATH");
   command->add_option("--loop", given->loop, "This take, again and again without a gap")->type_name("TAKE");
-  command->add_option("--harm", given->harm, "Share of the packets that get lost, cut, corrupted or doubled")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  command->add_option("--harm", given->harm, "Share of the packets that get lost, cut, corrupted or doubled")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command->add_option("--packet", given->packet_frames, "Frames in a packet")->check(CLI::Range(1, 500))->capture_default_str();
   command->add_option("--seconds", given->seconds, "Ends after this time; at Ctrl-C if left out")->type_name("S");
   command->footer("A line on standard input with the name of a take plays it: this is the hand that pulls the wire.");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// A rig that is not there: the recordings of a rig folder (simulated ones, say) come out of a serial line as a digitiser would send
-// them, and a sled answers on another. Between takes the string is at rest. A take of a pluck plays when its name is read from
-// standard input (the hand that pulls the wire); one of a bow, when the sled begins to move.
+// A rig that is not there: the recordings of a rig folder (simulated ones, say) come out of a serial line as a digitiser would
+// send them, and a sled answers on another. Between takes the string is at rest. A take of a pluck plays when its name is read
+// from standard input (the hand that pulls the wire); one of a bow, when the sled begins to move.
 //
 #pragma once
 

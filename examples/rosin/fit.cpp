@@ -21,7 +21,8 @@ struct options {
 };
 
 std::size_t width_of(const std::string& text) {  // of UTF-8
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
 std::string padded(const std::string& text, std::size_t width, bool right) {
@@ -38,13 +39,15 @@ void print_rows(const std::vector<calibration_row>& rows) {
   width[2] = std::max<std::size_t>(width[2], 6);
   width[3] = std::max<std::size_t>(width[3], 10);
   std::string group;
-  std::cout << padded("", width[0] + 2, false) << "  " << padded("value", width[1], true) << "  " << padded("random", width[2] + 3, true) << "  "
-            << padded("systematic", width[3] + 3, true) << "   (one standard deviation each)\n";
+  std::cout << padded("", width[0] + 2, false) << "  " << padded("value", width[1], true) << "  "
+            << padded("random", width[2] + 3, true) << "  " << padded("systematic", width[3] + 3, true)
+            << "   (one standard deviation each)\n";
   for (const auto& r : rows) {
     if (r.group != group) std::cout << (group = r.group) << '\n';
     const auto deviation = [](const std::string& sd) { return sd.empty() ? sd : "+- " + sd; };
     std::string line = "  " + padded(r.name, width[0], false) + "  " + padded(r.value, width[1], true) + "  " +
-                       padded(deviation(r.random), width[2] + 3, true) + "  " + padded(deviation(r.systematic), width[3] + 3, true) + "  " + r.unit;
+                       padded(deviation(r.random), width[2] + 3, true) + "  " +
+                       padded(deviation(r.systematic), width[3] + 3, true) + "  " + r.unit;
     line.erase(line.find_last_not_of(' ') + 1);
     std::cout << line << '\n';
   }
@@ -62,7 +65,8 @@ void print_text(const rig_calibration& c) {
   std::cout << '\n';
   print_rows(rows_of(c));
   for (const auto& name : c.fit.unidentified) std::cout << "not identifiable from these plucks: " << name << '\n';
-  std::cout << "random: changes from fit to fit; systematic: common to all, from the declared forces, gains, tension and length\n";
+  std::cout
+      << "random: changes from fit to fit; systematic: common to all, from the declared forces, gains, tension and length\n";
   print_remarks(c.warnings, c.assumed, true);
 }
 
@@ -93,7 +97,8 @@ exit_code run(const options& given, provenance from) {
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
   if (given.pickup || !folder->rig.has_both_forces()) {
-    if (!given.header.path.empty()) return fail(folder->rig.file + ": --emit-header: force transducers at both ends are needed", as_json);
+    if (!given.header.path.empty())
+      return fail(folder->rig.file + ": --emit-header: force transducers at both ends are needed", as_json);
     const auto fitted = calibrate_pickups(folder->rig, from);
     if (!fitted) return fail(fitted.error(), as_json);
     return deliver(*fitted, given, from, [](const pickup_calibration& c) {
@@ -108,7 +113,8 @@ exit_code run(const options& given, provenance from) {
   const auto fitted = calibrate(folder->rig, from, !given.report.empty());
   if (!fitted) return fail(fitted.error(), as_json);
   std::vector<std::string> said;
-  if (!given.header.path.empty() && any_end_moves(folder->rig)) said.emplace_back("header: the streaming reconstruction takes both ends for rigid; [terminations] is not in it");
+  if (!given.header.path.empty() && any_end_moves(folder->rig))
+    said.emplace_back("header: the streaming reconstruction takes both ends for rigid; [terminations] is not in it");
   if (!given.header.path.empty())
     if (const auto why = write_header(given.header, given.force, set_of(*fitted), from, said)) return fail(why->message, as_json);
   const exit_code done = deliver(*fitted, given, from, print_text);
@@ -122,7 +128,9 @@ void add_fit(CLI::App& app, exit_code& result) {
   auto given = std::make_shared<options>();
   CLI::App* command = app.add_subcommand("fit", "Calibrate string, contact and sensors from the plucks of a rig");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
-  command->add_option("--json", given->json_file, "Write everything, with the covariance, to FILE; without one, or with -, to standard output")
+  command
+      ->add_option("--json", given->json_file,
+                   "Write everything, with the covariance, to FILE; without one, or with -, to standard output")
       ->expected(0, 1)
       ->default_str("-")
       ->type_name("FILE");

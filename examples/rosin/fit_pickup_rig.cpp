@@ -44,14 +44,19 @@ json with_sd(const std::optional<measured_value>& m) { return m ? with_sd(m->val
 json partials_json(const rosin::pickup_fit& fit) {
   json out = json::array();
   for (const auto& p : fit.partials)
-    out.push_back({{"number", p.number}, {"frequency_Hz", with_sd(p.frequency_Hz, p.frequency_sd)}, {"decay_per_s", with_sd(p.decay_per_s, p.decay_sd)},
+    out.push_back({{"number", p.number},
+                   {"frequency_Hz", with_sd(p.frequency_Hz, p.frequency_sd)},
+                   {"decay_per_s", with_sd(p.decay_per_s, p.decay_sd)},
                    {"inverse_quality", with_sd(p.inverse_q(), p.decay_sd / (std::numbers::pi * p.frequency_Hz))},
-                   {"amplitude", with_sd(p.amplitude, p.amplitude_sd)}, {"split_Hz", p.doubled ? json(p.split_Hz) : json(nullptr)},
-                   {"weight", p.weight}, {"misfit", p.misfit}});
+                   {"amplitude", with_sd(p.amplitude, p.amplitude_sd)},
+                   {"split_Hz", p.doubled ? json(p.split_Hz) : json(nullptr)},
+                   {"weight", p.weight},
+                   {"misfit", p.misfit}});
   return out;
 }
 
-void fit_take(const rosin::rig& rig, const rosin::take& take, const checked_take& read, const rosin::pickup_string_facts& facts, pickup_calibration& out) {
+void fit_take(const rosin::rig& rig, const rosin::take& take, const checked_take& read, const rosin::pickup_string_facts& facts,
+              pickup_calibration& out) {
   for (const auto& signal : read.signals.signals) {
     if (!rings(signal.sensor.quantity)) continue;
     const auto fit = rosin::fit_pickup(signal.values, read.signals.sample_rate_Hz, rig.string.fundamental_Hz);
@@ -62,8 +67,9 @@ void fit_take(const rosin::rig& rig, const rosin::take& take, const checked_take
       continue;
     }
     for (const auto& warning : fit->warnings) out.warnings.push_back(where + warning);
-    out.results.push_back({take.name, signal.sensor.name, read.signals.sample_rate_Hz, *fit,
-                           rosin::string_from(facts, {fit->fundamental_Hz, fit->fundamental_sd}, {fit->inharmonicity, fit->inharmonicity_sd})});
+    out.results.push_back(
+        {take.name, signal.sensor.name, read.signals.sample_rate_Hz, *fit,
+         rosin::string_from(facts, {fit->fundamental_Hz, fit->fundamental_sd}, {fit->inharmonicity, fit->inharmonicity_sd})});
   }
 }
 
@@ -83,8 +89,10 @@ rosin::outcome<pickup_calibration> calibrate_pickups(const rosin::rig& rig, prov
     else out.incomplete = true;
   }
   if (!out.results.empty()) return out;
-  const bool any = std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::pluck && !t.hold_out; });
-  std::string why = rig.file + (any ? ": no pluck that could be fitted" : ": take: none of kind pluck (hold_out aside), so there is nothing to fit");
+  const bool any = std::any_of(rig.takes.begin(), rig.takes.end(),
+                               [](const auto& t) { return t.kind == rosin::take_kind::pluck && !t.hold_out; });
+  std::string why = rig.file + (any ? ": no pluck that could be fitted"
+                                    : ": take: none of kind pluck (hold_out aside), so there is nothing to fit");
   for (const auto& line : out.warnings) why += "\n" + line;
   return rosin::failure{why};
 }
@@ -95,16 +103,25 @@ json to_json(const pickup_calibration& c, const provenance& from) {
   for (const auto& r : c.results) {
     const auto& f = r.fit;
     out["results"].push_back(
-        {{"take", r.take}, {"channel", r.channel}, {"sampling_rate_Hz", r.rate_Hz}, {"from_s", f.start_s},
-         {"fundamental_Hz", with_sd(f.fundamental_Hz, f.fundamental_sd)}, {"inharmonicity", with_sd(f.inharmonicity, f.inharmonicity_sd)},
+        {{"take", r.take},
+         {"channel", r.channel},
+         {"sampling_rate_Hz", r.rate_Hz},
+         {"from_s", f.start_s},
+         {"fundamental_Hz", with_sd(f.fundamental_Hz, f.fundamental_sd)},
+         {"inharmonicity", with_sd(f.inharmonicity, f.inharmonicity_sd)},
          {"covariance", {{f.covariance(0, 0), f.covariance(0, 1)}, {f.covariance(1, 0), f.covariance(1, 1)}}},
-         {"inverse_quality", with_sd(f.loss.value[0], f.loss.sd[0])}, {"loss_internal_s", with_sd(f.loss.value[1], f.loss.sd[1])},
-         {"loss_air_sqrt_Hz", with_sd(f.loss.value[2], f.loss.sd[2])}, {"loss_scatter", f.loss.relative_scatter},
-         {"frequency_scatter_Hz", f.scatter_Hz}, {"pitch_glide", with_sd(f.glide.relative, f.glide_sd)},
-         {"tension_N", with_sd(r.string.tension_N)}, {"impedance_Ns_m", with_sd(r.string.impedance_Ns_m)},
+         {"inverse_quality", with_sd(f.loss.value[0], f.loss.sd[0])},
+         {"loss_internal_s", with_sd(f.loss.value[1], f.loss.sd[1])},
+         {"loss_air_sqrt_Hz", with_sd(f.loss.value[2], f.loss.sd[2])},
+         {"loss_scatter", f.loss.relative_scatter},
+         {"frequency_scatter_Hz", f.scatter_Hz},
+         {"pitch_glide", with_sd(f.glide.relative, f.glide_sd)},
+         {"tension_N", with_sd(r.string.tension_N)},
+         {"impedance_Ns_m", with_sd(r.string.impedance_Ns_m)},
          {"bending_stiffness_Nm2", with_sd(r.string.bending_stiffness_Nm2)},
          {"expected_inharmonicity", with_sd(r.string.expected_inharmonicity)},
-         {"diameter_from_sound_m", with_sd(r.string.diameter_from_sound_m)}, {"partials", partials_json(f)}});
+         {"diameter_from_sound_m", with_sd(r.string.diameter_from_sound_m)},
+         {"partials", partials_json(f)}});
   }
   out["warnings"] = c.warnings;
   out["assumed"] = c.assumed;
@@ -117,7 +134,8 @@ std::vector<calibration_row> rows_of(const pickup_result& r) {
   const auto add = [&](const std::string& name, double value, double sd, const std::string& unit, double scale = 1) {
     rows.push_back({group, name, unit, rounded(scale * value, scale * sd), in_digits(scale * sd, "%.2g"), ""});
   };
-  const auto derived = [&](const std::string& name, const std::optional<measured_value>& m, const std::string& unit, double scale = 1) {
+  const auto derived = [&](const std::string& name, const std::optional<measured_value>& m, const std::string& unit,
+                           double scale = 1) {
     if (m) add(name, m->value, m->sd, unit, scale);
   };
   const auto& f = r.fit;

@@ -26,7 +26,8 @@ struct pluck_shape {
   std::vector<rosin::damped_line> lines;
   std::array<double, 2> held{}, corner{};  // before the release; rad/s
 
-  pluck_shape(const rosin::pluck_fit_result& fit, double position, const rosin::band& limits, int most, const std::array<double, 2>& ac_coupled_Hz) {
+  pluck_shape(const rosin::pluck_fit_result& fit, double position, const rosin::band& limits, int most,
+              const std::array<double, 2>& ac_coupled_Hz) {
     lines = rosin::pluck_lines(fit.string(), position, 0, limits, most);
     for (std::size_t c = 0; c < 2; ++c) {
       const double gain = std::exp(fit.value[rosin::pluck_layout::gain_near + static_cast<int>(c)]);
@@ -77,7 +78,8 @@ free_part solve(const pluck_prediction& p, const pluck_shape& shape, std::size_t
     if (shape.corner[c] == 0)
       for (std::size_t i = 0; i < before; ++i) add(c, p.recorded_N[c][i], shape.held[c], 0, 1);
     for (std::size_t i = 0; i < signal[c].size(); ++i)
-      add(c, p.recorded_N[c][begin + i], signal[c][i], slope[c][i], std::exp(-shape.corner[c] * static_cast<double>(i) / p.rate_Hz));
+      add(c, p.recorded_N[c][begin + i], signal[c][i], slope[c][i],
+          std::exp(-shape.corner[c] * static_cast<double>(i) / p.rate_Hz));
   }
   free_part out;
   out.at = normal.ldlt().solve(right);

@@ -21,16 +21,19 @@ void derive_units(const rosin::rig& rig, rig_calibration& c) {
     c.impedance_Ns_m = doubtful{v.impedance_Ns_m->value, 0, v.impedance_Ns_m->sd};
   } else if (v.tension_N) {
     const double z = v.tension_N->value / (2 * L * f0);
-    c.impedance_Ns_m = doubtful{z, z * c.fit.sd[layout::fundamental] / f0, z * std::hypot(v.tension_N->sd / v.tension_N->value, length)};
+    c.impedance_Ns_m =
+        doubtful{z, z * c.fit.sd[layout::fundamental] / f0, z * std::hypot(v.tension_N->sd / v.tension_N->value, length)};
   }
   if (!c.impedance_Ns_m) {
     c.warnings.push_back("neither tension_N nor impedance_Ns_m: no bending stiffness in N m^2, and velocities cannot be had");
     return;
   }
   const double tension = c.impedance_Ns_m->value * 2 * L * f0, per = tension * L * L / (std::numbers::pi * std::numbers::pi);
-  const double of_tension = rig.string.impedance_Ns_m ? std::hypot(c.impedance_Ns_m->systematic_sd / c.impedance_Ns_m->value, length)
-                                                      : v.tension_N->sd / v.tension_N->value;
-  c.bending_stiffness_Nm2 = doubtful{b * per, c.fit.sd[layout::inharmonicity] * per, std::abs(b) * per * std::hypot(of_tension, 2 * length)};
+  const double of_tension = rig.string.impedance_Ns_m
+                                ? std::hypot(c.impedance_Ns_m->systematic_sd / c.impedance_Ns_m->value, length)
+                                : v.tension_N->sd / v.tension_N->value;
+  c.bending_stiffness_Nm2 =
+      doubtful{b * per, c.fit.sd[layout::inharmonicity] * per, std::abs(b) * per * std::hypot(of_tension, 2 * length)};
 }
 
 /// The mean over the plucks, with the scatter between them where that is more than each one's error.
@@ -60,19 +63,22 @@ void judge(rig_calibration& c) {
                          " times the noise's power at the partials; residual " + in_digits(100 * worst, "%.2g") +
                          " % of the signal): standard deviations are widened accordingly");
   if (c.fit.horizon_periods < 1e6)
-    c.warnings.push_back("the model holds for the first " + in_digits(c.fit.horizon_periods, "%.0f") + " periods only: the rest was not used");
+    c.warnings.push_back("the model holds for the first " + in_digits(c.fit.horizon_periods, "%.0f") +
+                         " periods only: the rest was not used");
   const auto& L = c.fit.layout;
   for (std::size_t t = 0; t < c.takes.size(); ++t) {
-    const double off = c.fit.value[L.at(t, layout::strength)] - std::log(c.takes[t].strength_N), sd = c.takes[t].strength_tolerance / 2;
+    const double off = c.fit.value[L.at(t, layout::strength)] - std::log(c.takes[t].strength_N),
+                 sd = c.takes[t].strength_tolerance / 2;
     if (std::abs(off) > 3 * sd)
-      c.warnings.push_back(c.takes[t].name + ": its strength is " + in_digits(100 * (std::exp(off) - 1), "%+.1f") + " % off the declared force, " +
-                           in_digits(std::abs(off) / sd, "%.1f") + " standard deviations");
+      c.warnings.push_back(c.takes[t].name + ": its strength is " + in_digits(100 * (std::exp(off) - 1), "%+.1f") +
+                           " % off the declared force, " + in_digits(std::abs(off) / sd, "%.1f") + " standard deviations");
   }
   for (int channel = 0; channel < 2; ++channel) {
     const double off = c.fit.value[layout::gain_near + channel], sd = c.fit.sd[layout::gain_near + channel];
     if (std::abs(off) > 0.15)
-      c.warnings.push_back(std::string("the gain of channel ") + (channel == 0 ? "near" : "far") + " is " + in_digits(100 * (std::exp(off) - 1), "%+.1f") +
-                           " % off its nominal value (+- " + in_digits(100 * sd, "%.2g") + " %)");
+      c.warnings.push_back(std::string("the gain of channel ") + (channel == 0 ? "near" : "far") + " is " +
+                           in_digits(100 * (std::exp(off) - 1), "%+.1f") + " % off its nominal value (+- " +
+                           in_digits(100 * sd, "%.2g") + " %)");
   }
 }
 
@@ -115,7 +121,8 @@ rosin::outcome<rosin::pluck_fit_result> fit_on_moving_ends(const rosin::rig& rig
     c.ends.with_waveform.emplace_back(rosin::waveform_jacobian(found->plucks, declared) * found->covariance.topRightCorner(n, m));
   for (const auto& mode : c.ends.modes)
     if (mode.end_uncertain)
-      c.warnings.push_back("the plucks cannot tell at which end the resonance at " + in_digits(mode.mode.frequency_Hz, "%.0f") + " Hz sits; it is taken to be at " + (mode.end == 0 ? "near" : "far"));
+      c.warnings.push_back("the plucks cannot tell at which end the resonance at " + in_digits(mode.mode.frequency_Hz, "%.0f") +
+                           " Hz sits; it is taken to be at " + (mode.end == 0 ? "near" : "far"));
   return std::move(found->plucks);
 }
 
@@ -131,7 +138,8 @@ rosin::outcome<rig_calibration> calibrate(const rosin::rig& rig, provenance& fro
   out.takes = std::move(plucks.takes), out.held_out = std::move(plucks.held_out);
   out.warnings = std::move(plucks.warnings), out.incomplete = plucks.incomplete;
   if (out.takes.empty()) {
-    std::string why = rig.file + ": no pluck to calibrate from; record a pluck made by a breaking wire at the contact, or give a calibration";
+    std::string why =
+        rig.file + ": no pluck to calibrate from; record a pluck made by a breaking wire at the contact, or give a calibration";
     for (const auto& line : out.warnings) why += "\n" + line;
     return rosin::failure{why};
   }
@@ -142,7 +150,8 @@ rosin::outcome<rig_calibration> calibrate(const rosin::rig& rig, provenance& fro
   out.declared = out.fit.layout.positions();
   const double z = out.impedance_Ns_m ? out.impedance_Ns_m->value : std::numeric_limits<double>::quiet_NaN();
   const double z_sd = out.impedance_Ns_m ? std::hypot(out.impedance_Ns_m->sd, out.impedance_Ns_m->systematic_sd) / z : 0;
-  for (const auto declared : out.declared) out.at.push_back(rosin::calibration_from(out.fit, declared, z, z_sd, out.ac_coupled_Hz));
+  for (const auto declared : out.declared)
+    out.at.push_back(rosin::calibration_from(out.fit, declared, z, z_sd, out.ac_coupled_Hz));
   out.offset_N = {offset_of(out, layout::offset_near), offset_of(out, layout::offset_far)};
   judge(out);
   predict(out, draw);

@@ -20,17 +20,17 @@ struct doubtful {
 struct rig_calibration {
   std::string title;
   rosin::pluck_fit_result fit;
-  std::vector<rosin::pluck_take> takes, held_out;   ///< as fitted, and as predicted
-  std::vector<pluck_prediction> drawn, predicted;   ///< the same, with the model beside the recording
+  std::vector<rosin::pluck_take> takes, held_out;  ///< as fitted, and as predicted
+  std::vector<pluck_prediction> drawn, predicted;  ///< the same, with the model beside the recording
   rosin::rig_values values;
   std::array<double, 2> ac_coupled_Hz{};
-  std::vector<rosin::calibration> at;               ///< for each declared position
+  std::vector<rosin::calibration> at;  ///< for each declared position
   std::vector<double> declared;
-  std::array<doubtful, 2> offset_N{};               ///< of the sensors, over all plucks
+  std::array<doubtful, 2> offset_N{};  ///< of the sensors, over all plucks
   std::optional<doubtful> bending_stiffness_Nm2, impedance_Ns_m;
-  fitted_ends ends;                                 ///< what the plucks say of terminations that are to be fitted
+  fitted_ends ends;  ///< what the plucks say of terminations that are to be fitted
   std::vector<std::string> assumed, warnings;
-  bool incomplete = false;                          ///< plucks had to be left out, or the fit did not settle
+  bool incomplete = false;  ///< plucks had to be left out, or the fit did not settle
 
   [[nodiscard]] double rate_Hz() const { return takes.front().rate_Hz; }
 };

@@ -23,10 +23,13 @@ struct table_of_rows {
 
   /// scale: from SI to the unit shown.
   void add(const std::string& name, const doubtful& d, const std::string& unit, double scale = 1) {
-    rows.push_back({group, name, unit, rounded(scale * d.value, scale * std::max(d.sd, d.systematic_sd)), d.sd > 0 ? in_digits(scale * d.sd, "%.2g") : "",
+    rows.push_back({group, name, unit, rounded(scale * d.value, scale * std::max(d.sd, d.systematic_sd)),
+                    d.sd > 0 ? in_digits(scale * d.sd, "%.2g") : "",
                     d.systematic_sd > 0 ? in_digits(scale * d.systematic_sd, "%.2g") : ""});
   }
-  void text(const std::string& name, const std::string& value, const std::string& unit = "") { rows.push_back({group, name, unit, value, "", ""}); }
+  void text(const std::string& name, const std::string& value, const std::string& unit = "") {
+    rows.push_back({group, name, unit, value, "", ""});
+  }
 };
 
 void string_rows(table_of_rows& t, const rig_calibration& c) {
@@ -67,7 +70,8 @@ void end_rows(table_of_rows& t, const rig_calibration& c) {
       t.add(m.end_uncertain ? "resonance (or at the other end)" : "resonance", {m.mode.frequency_Hz, m.frequency_sd_Hz, 0}, "Hz");
       t.add("its Q", {m.mode.q, m.q_sd, 0}, "");
       const double relative = c.impedance_Ns_m ? c.impedance_Ns_m->value / m.mode.per_mass_per_s : 1 / m.mode.per_mass_per_s;
-      t.add(c.impedance_Ns_m ? "its mass" : "its mass / Z", {relative, relative * m.per_mass_relative_sd, 0}, c.impedance_Ns_m ? "g" : "ms", 1e3);
+      t.add(c.impedance_Ns_m ? "its mass" : "its mass / Z", {relative, relative * m.per_mass_relative_sd, 0},
+            c.impedance_Ns_m ? "g" : "ms", 1e3);
     }
     if (!any) t.text("rigid", "as far as these plucks tell");
   }
@@ -97,7 +101,8 @@ void take_rows(table_of_rows& t, const rig_calibration& c) {
     t.group = "take " + c.takes[i].name;
     t.add("release", {c.fit.value[L.at(i, layout::release)], c.fit.sd[L.at(i, layout::release)], 0}, "ms", 1e3);
     const double force = std::exp(c.fit.value[L.at(i, layout::strength)]);
-    t.add("force (declared " + in_digits(c.takes[i].strength_N, "%.2g") + " N)", {force, 0, force * c.fit.sd[L.at(i, layout::strength)]}, "N");
+    t.add("force (declared " + in_digits(c.takes[i].strength_N, "%.2g") + " N)",
+          {force, 0, force * c.fit.sd[L.at(i, layout::strength)]}, "N");
     t.text("residual / signal", in_digits(100 * c.fit.residual_ratio[i], "%.3g"), "%");
   }
   for (const auto& p : c.predicted) {

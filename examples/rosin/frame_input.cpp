@@ -44,7 +44,8 @@ rosin::outcome<frame_input> open_serial(const std::string& device, const input_o
 rosin::outcome<frame_input> open_input(const input_options& given) {
   const rosin::frame_format wanted{given.rate_Hz, given.channels, given.bits, given.float_format, true};
   const std::string& s = given.source;
-  if (s == "-") return paced(rosin::sndfile_source::open_pipe(STDIN_FILENO, given.bare ? std::optional{wanted} : std::nullopt), given.faster);
+  if (s == "-")
+    return paced(rosin::sndfile_source::open_pipe(STDIN_FILENO, given.bare ? std::optional{wanted} : std::nullopt), given.faster);
   if (s.starts_with("serial:")) return open_serial(s.substr(7), given);
 #ifdef ROSIN_TOOL_ALSA
   if (s.starts_with("alsa:")) return open_alsa(s.substr(5), wanted);
@@ -60,14 +61,26 @@ rosin::outcome<frame_input> open_input(const input_options& given) {
 }
 
 void add_input_options(CLI::App& command, input_options& given) {
-  command.add_option("--source", given.source, "A file, - for standard input, serial:DEVICE, alsa:DEVICE or jack:PORT,PORT")->required()->type_name("SOURCE");
-  command.add_option("--rate", given.rate_Hz, "Sampling rate, where the source does not tell it (alsa:, --bare)")->type_name("HZ")->check(CLI::PositiveNumber)->capture_default_str();
-  command.add_option("--channels", given.channels, "Number of channels, the same")->check(CLI::Range(1, 64))->capture_default_str();
-  command.add_option("--bits", given.bits, "Bits of a sample, the same")->check(CLI::IsMember({16, 24, 32}))->capture_default_str();
+  command.add_option("--source", given.source, "A file, - for standard input, serial:DEVICE, alsa:DEVICE or jack:PORT,PORT")
+      ->required()
+      ->type_name("SOURCE");
+  command.add_option("--rate", given.rate_Hz, "Sampling rate, where the source does not tell it (alsa:, --bare)")
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--channels", given.channels, "Number of channels, the same")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command.add_option("--bits", given.bits, "Bits of a sample, the same")
+      ->check(CLI::IsMember({16, 24, 32}))
+      ->capture_default_str();
   command.add_flag("--float", given.float_format, "Samples are 32-bit floating point, the same");
   command.add_flag("--bare", given.bare, "Standard input has no header, only samples (little endian)");
   command.add_option("--baud", given.baud, "Speed of a serial line")->capture_default_str();
-  command.add_option("--faster", given.faster, "A file plays in real time (1) or so many times as fast; 0: as fast as it is read")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command
+      .add_option("--faster", given.faster, "A file plays in real time (1) or so many times as fast; 0: as fast as it is read")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
 }
 
 }  // namespace tool

@@ -29,11 +29,13 @@ void add_input_options(CLI::App& command, input_options& given);
 class frame_input {
 public:
   template <class Source>
-    requires(!std::same_as<Source, frame_input>) && rosin::FrameSource<Source>
-  explicit frame_input(Source source) : from_{std::make_unique<held<Source>>(std::move(source))} {}
+  requires(!std::same_as<Source, frame_input>) && rosin::FrameSource<Source> explicit frame_input(Source source)
+      : from_{std::make_unique<held<Source>>(std::move(source))} {}
 
   [[nodiscard]] rosin::frame_format format() const { return from_->format(); }
-  [[nodiscard]] rosin::frame_read read(std::span<double> to, std::chrono::milliseconds patience) { return from_->read(to, patience); }
+  [[nodiscard]] rosin::frame_read read(std::span<double> to, std::chrono::milliseconds patience) {
+    return from_->read(to, patience);
+  }
 
 private:
   struct any {
@@ -45,7 +47,9 @@ private:
   struct held final : any {
     explicit held(Source s) : source{std::move(s)} {}
     [[nodiscard]] rosin::frame_format format() const override { return source.format(); }
-    [[nodiscard]] rosin::frame_read read(std::span<double> to, std::chrono::milliseconds patience) override { return source.read(to, patience); }
+    [[nodiscard]] rosin::frame_read read(std::span<double> to, std::chrono::milliseconds patience) override {
+      return source.read(to, patience);
+    }
     Source source;
   };
   std::unique_ptr<any> from_;

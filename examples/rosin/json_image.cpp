@@ -74,8 +74,11 @@ json column_image(const rosin::table_column& column) {
     high = std::max(high, x);
   }
   const std::uint64_t values = column.values.size() - empty;
-  return {{"values", values}, {"empty", empty}, {"minimum", values > 0 ? json(low) : json(nullptr)},
-          {"maximum", values > 0 ? json(high) : json(nullptr)}, {"ascending", ascending}};
+  return {{"values", values},
+          {"empty", empty},
+          {"minimum", values > 0 ? json(low) : json(nullptr)},
+          {"maximum", values > 0 ? json(high) : json(nullptr)},
+          {"ascending", ascending}};
 }
 
 rosin::outcome<json_image> table_image(const std::string& path, const std::string& text) {
@@ -94,7 +97,8 @@ rosin::outcome<json_image> plain_image(const std::string& path, const std::strin
   try {
     json document = json::parse(text);
     const bool calibration = document.is_object() && document.value("format", json{}) == "calibration";
-    return json_image{calibration ? format::calibration : format::diagnosis, std::move(document), [path](const std::string&) { return path; }};
+    return json_image{calibration ? format::calibration : format::diagnosis, std::move(document),
+                      [path](const std::string&) { return path; }};
   } catch (const json::exception& error) {
     return rosin::failure{path + ": " + error.what()};
   }
@@ -104,10 +108,14 @@ rosin::outcome<json_image> plain_image(const std::string& path, const std::strin
 
 std::string name_of(format what) {
   switch (what) {
-    case format::rig: return "rig";
-    case format::reconstruction: return "reconstruction";
-    case format::calibration: return "calibration";
-    case format::diagnosis: break;
+    case format::rig:
+      return "rig";
+    case format::reconstruction:
+      return "reconstruction";
+    case format::calibration:
+      return "calibration";
+    case format::diagnosis:
+      break;
   }
   return "diagnosis";
 }
@@ -116,12 +124,14 @@ rosin::outcome<json_image> read_json_image(const std::string& path) {
   std::error_code ignored;
   std::ifstream in{path, std::ios::binary};
   std::ostringstream text;
-  if (!in || std::filesystem::is_directory(path, ignored) || !(text << in.rdbuf())) return rosin::failure{path + ": cannot be read, or is empty"};
+  if (!in || std::filesystem::is_directory(path, ignored) || !(text << in.rdbuf()))
+    return rosin::failure{path + ": cannot be read, or is empty"};
   const auto extension = std::filesystem::path{path}.extension();
   if (extension == ".toml") return rig_image(path, text.str());
   if (extension == ".csv") return table_image(path, text.str());
   if (extension == ".json") return plain_image(path, text.str());
-  return rosin::failure{path + ": the name says no format; a rig ends in .toml, a reconstruction in .csv, a diagnosis or a calibration in .json"};
+  return rosin::failure{
+      path + ": the name says no format; a rig ends in .toml, a reconstruction in .csv, a diagnosis or a calibration in .json"};
 }
 
 }  // namespace tool

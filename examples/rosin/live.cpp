@@ -36,7 +36,9 @@ rosin::outcome<rosin::rig> rig_of(const options& given, take_plan& take, std::op
   return files->with(take);
 }
 
-json memory_json(std::uint64_t before, std::uint64_t after) { return {{"resident_bytes_early", before}, {"resident_bytes_late", after}}; }
+json memory_json(std::uint64_t before, std::uint64_t after) {
+  return {{"resident_bytes_early", before}, {"resident_bytes_late", after}};
+}
 
 struct live_state {
   std::optional<rosin::failure> bad;  ///< an output that broke
@@ -62,9 +64,11 @@ recorder_hooks hooks_of(live_chain& chain, std::optional<sled>& moves, bool reco
   return hooks;
 }
 
-rosin::outcome<live_chain> chain_for(const options& given, const rosin::rig& rig, const take_plan& take, const rosin::frame_format& format) {
+rosin::outcome<live_chain> chain_for(const options& given, const rosin::rig& rig, const take_plan& take,
+                                     const rosin::frame_format& format) {
   for (const auto& c : rig.channels)
-    if (c.index >= format.channels) return rosin::failure{rig.file + ": channels." + c.name + ".index: the source has no such channel"};
+    if (c.index >= format.channels)
+      return rosin::failure{rig.file + ": channels." + c.name + ".index: the source has no such channel"};
   const auto calibration = read_calibration(given.calibration);
   if (!calibration) return rosin::failure{calibration.error()};
   return live_chain::design(rig, take, *calibration, format, given.live);
@@ -77,11 +81,15 @@ rosin::outcome<std::optional<sled>> sled_for(const options& given, const take_pl
   return std::optional<sled>{*std::move(opened)};
 }
 
-exit_code tell(const options& given, const recorder& from, const take_report& report, live_chain& chain, const live_state& state) {
+exit_code tell(const options& given, const recorder& from, const take_report& report, live_chain& chain,
+               const live_state& state) {
   const std::uint64_t late_bytes = resident_bytes();
   auto bad = chain.finish();
   if (bad) std::cerr << "rosin: " << bad->message << '\n';
-  const json out{{"schema", 1}, {"recording", to_json(report)}, {"reconstruction", chain.to_json()}, {"fullest_buffer", from.fullest_buffer()},
+  const json out{{"schema", 1},
+                 {"recording", to_json(report)},
+                 {"reconstruction", chain.to_json()},
+                 {"fullest_buffer", from.fullest_buffer()},
                  {"memory", memory_json(state.early_bytes, late_bytes)}};
   if (!given.json_file.empty())
     if (const auto why = save_json(given.json_file, out, given.live.force)) {
@@ -89,7 +97,8 @@ exit_code tell(const options& given, const recorder& from, const take_report& re
       bad = why;
     }
   const bool lines_on_out = std::find(given.live.out.begin(), given.live.out.end(), "-") != given.live.out.end();
-  if (given.json_file != "-") (lines_on_out ? std::cerr : std::cout) << summary_of(report) << "\n  " << chain.summary() << std::endl;
+  if (given.json_file != "-")
+    (lines_on_out ? std::cerr : std::cout) << summary_of(report) << "\n  " << chain.summary() << std::endl;
   return !bad && !state.bad && report.problems.empty() && report.frames > 0 ? exit_code::ok : exit_code::finding;
 }
 
@@ -121,7 +130,9 @@ void add_live(CLI::App& app, exit_code& result) {
   auto given = std::make_shared<options>();
   CLI::App* command = app.add_subcommand("live", "Force and velocity under the bow while it moves, and the take besides");
   command->add_option("RIG", given->rig, "Folder of the rig; the take joins its rig.toml")->required();
-  command->add_option("--calibration", given->calibration, "What `rosin fit --json` made of the plucks")->required()->type_name("FILE");
+  command->add_option("--calibration", given->calibration, "What `rosin fit --json` made of the plucks")
+      ->required()
+      ->type_name("FILE");
   command->add_flag("--no-take", given->no_take, "Nothing is recorded");
   add_input_options(*command, given->input);
   add_live_options(*command, given->live);
@@ -129,7 +140,9 @@ void add_live(CLI::App& app, exit_code& result) {
   add_recorder_options(*command, given->how);
   add_sled_options(*command, given->stroke);
   command->add_option("--json", given->json_file, "What was found, for a program; - for standard output")->type_name("FILE");
-  command->footer("Without a terminal nothing is shown. Exit status: 0 done; 1 done, but frames are missing or it broke off; 2 nothing was done.");
+  command->footer(
+      "Without a terminal nothing is shown. Exit status: 0 done; 1 done, but frames are missing or it broke off; 2 nothing was "
+      "done.");
   command->callback([given, &result] { result = run(*given); });
 }
 

@@ -29,12 +29,14 @@ struct frame_output {
   std::function<std::optional<rosin::failure>(std::span<const double>)> write;
   std::function<std::optional<rosin::failure>()> finish;
 };
-[[nodiscard]] rosin::outcome<frame_output> open_output(const std::string& path, bool force, double rate_Hz, const std::vector<std::string>& columns);
+[[nodiscard]] rosin::outcome<frame_output> open_output(const std::string& path, bool force, double rate_Hz,
+                                                       const std::vector<std::string>& columns);
 
 class live_chain {
 public:
-  [[nodiscard]] static rosin::outcome<live_chain> design(const rosin::rig& rig, const take_plan& take, const calibration_set& calibration,
-                                                         const rosin::frame_format& format, const live_options& how);
+  [[nodiscard]] static rosin::outcome<live_chain> design(const rosin::rig& rig, const take_plan& take,
+                                                         const calibration_set& calibration, const rosin::frame_format& format,
+                                                         const live_options& how);
 
   /// The reason where an output took no more; it gets nothing further, the others go on.
   [[nodiscard]] std::optional<rosin::failure> push(std::span<const double> interleaved);
@@ -58,7 +60,8 @@ private:
   live_chain() = default;
   void place(const rosin::rig& rig, const calibration_set& set, rosin::calibration& at, double declared);
   void set_ends(const rosin::rig& rig, const calibration_set& set, double rate_Hz);
-  [[nodiscard]] std::optional<rosin::failure> open(const take_plan& take, const rosin::frame_format& format, const live_options& how);
+  [[nodiscard]] std::optional<rosin::failure> open(const take_plan& take, const rosin::frame_format& format,
+                                                   const live_options& how);
   [[nodiscard]] std::optional<rosin::failure> give(std::size_t count);
 
   std::array<end, 2> ends_;

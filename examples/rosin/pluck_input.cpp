@@ -18,7 +18,7 @@ std::optional<rosin::pluck_take> pluck_of(const rosin::rig& rig, const rosin::ta
     warnings.push_back(take.name + ": left out: the force of its release (force_N) is unknown");
     return std::nullopt;
   }
-  rosin::pluck_take out{take.name, read.signals.sample_rate_Hz, {read.signals.near_N(), read.signals.far_N()},
+  rosin::pluck_take out{take.name,     read.signals.sample_rate_Hz,     {read.signals.near_N(), read.signals.far_N()},
                         *take.force_N, rosin::force_tolerance_of(take), *position};
   return out;
 }
@@ -38,7 +38,8 @@ void keep_one_rate(rig_plucks& out) {
 
 rig_plucks read_plucks(const rosin::rig& rig, provenance& from) {
   rig_plucks out;
-  const auto plucks = std::count_if(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::pluck; });
+  const auto plucks =
+      std::count_if(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::pluck; });
   progress bar{"reading plucks", static_cast<std::size_t>(plucks)};
   for (const auto& take : rig.takes) {
     if (take.kind != rosin::take_kind::pluck) continue;
@@ -57,10 +58,14 @@ rig_plucks read_plucks(const rosin::rig& rig, provenance& from) {
 rosin::pluck_guess guess_of(const rosin::rig& rig, const rosin::rig_values& values) {
   const auto& near = *rig.channel("near");
   const auto& far = *rig.channel("far");
-  rosin::pluck_guess guess{values.fundamental_Hz.value, 0, values.quality, {rosin::gain_tolerance_of(near), rosin::gain_tolerance_of(far)},
+  rosin::pluck_guess guess{values.fundamental_Hz.value,
+                           0,
+                           values.quality,
+                           {rosin::gain_tolerance_of(near), rosin::gain_tolerance_of(far)},
                            {near.ac_coupled_Hz.value_or(0), far.ac_coupled_Hz.value_or(0)}};
   if (values.bending_stiffness_Nm2 && values.tension_N && values.length_m)
-    guess.inharmonicity = std::pow(std::numbers::pi / values.length_m->value, 2) * values.bending_stiffness_Nm2->value / values.tension_N->value;
+    guess.inharmonicity =
+        std::pow(std::numbers::pi / values.length_m->value, 2) * values.bending_stiffness_Nm2->value / values.tension_N->value;
   return guess;
 }
 

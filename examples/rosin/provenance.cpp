@@ -62,7 +62,8 @@ provenance::provenance(const CLI::App& used) : command{used.get_name()} {
 std::optional<rosin::failure> provenance::add_input(const std::string& path) {
   auto file = fingerprint(path);
   if (!file) return rosin::failure{file.error()};
-  const bool known = std::any_of(inputs.begin(), inputs.end(), [&](const input_file& f) { return f.path == file->path && f.sha256 == file->sha256; });
+  const bool known = std::any_of(inputs.begin(), inputs.end(),
+                                 [&](const input_file& f) { return f.path == file->path && f.sha256 == file->sha256; });
   if (!known) inputs.push_back(*std::move(file));
   return std::nullopt;
 }

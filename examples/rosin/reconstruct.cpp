@@ -47,26 +47,31 @@ std::string names_of(const rosin::rig& rig) {
 rosin::outcome<const rosin::take*> bowed_take(const rosin::rig& rig, const std::string& name) {
   const rosin::take* take = rig.find_take(name);
   if (!rig.has_both_forces())
-    return rosin::failure{rig.file + ": channels near and far (forces on both terminations) are needed to reconstruct what happens between them"};
+    return rosin::failure{
+        rig.file + ": channels near and far (forces on both terminations) are needed to reconstruct what happens between them"};
   if (take == nullptr) return rosin::failure{rig.file + ": no take \"" + name + "\"; bowed takes: " + names_of(rig)};
   if (take->kind != rosin::take_kind::bow)
-    return rosin::failure{rig.file + ":" + std::to_string(take->line) + ": take \"" + name + "\" is of kind " + name_of(take->kind) + "; bowed takes: " + names_of(rig)};
+    return rosin::failure{rig.file + ":" + std::to_string(take->line) + ": take \"" + name + "\" is of kind " +
+                          name_of(take->kind) + "; bowed takes: " + names_of(rig)};
   return take;
 }
 
 /// From the plucks of the rig, or from a file.
-rosin::outcome<calibration_set> calibration_of(const options& given, const rosin::rig& rig, provenance& from, std::optional<rig_calibration>& fitted) {
+rosin::outcome<calibration_set> calibration_of(const options& given, const rosin::rig& rig, provenance& from,
+                                               std::optional<rig_calibration>& fitted) {
   if (!given.calibration.empty()) {
     if (const auto why = from.add_input(given.calibration)) return *why;
     return read_calibration(given.calibration);
   }
-  auto made = calibrate(rig, from, !given.report.empty());  // with --model, too: what the declared model makes of the plucks stands beside it
+  auto made = calibrate(
+      rig, from, !given.report.empty());  // with --model, too: what the declared model makes of the plucks stands beside it
   if (!made) return rosin::failure{made.error()};
   fitted = *std::move(made);
   return set_of(*fitted);
 }
 
-std::optional<rosin::failure> deliver(const options& given, const take_reconstruction& r, const std::optional<rig_calibration>& fitted, const provenance& from) {
+std::optional<rosin::failure> deliver(const options& given, const take_reconstruction& r,
+                                      const std::optional<rig_calibration>& fitted, const provenance& from) {
   if (given.output.path == "-") rosin::write_csv(std::cout, table_of(r, from));
   else if (!given.output.path.empty())
     if (auto why = save(given.output, table_of(r, from))) return why;
@@ -85,7 +90,8 @@ std::string said_of(const corrected_model& m) {
     for (const auto& n : names) out += (out.empty() ? "" : ", ") + n;
     return out.empty() ? std::string{"nothing"} : out;
   };
-  return m.file + ": taken into account: " + list(m.effects) + (m.passed_over.empty() ? "" : "; of the contact, hence not needed: " + list(m.passed_over));
+  return m.file + ": taken into account: " + list(m.effects) +
+         (m.passed_over.empty() ? "" : "; of the contact, hence not needed: " + list(m.passed_over));
 }
 
 void print_text(std::ostream& out, const take_reconstruction& r) {
@@ -138,16 +144,36 @@ void add_reconstruct(CLI::App& app, exit_code& result) {
   command->add_option("--take", given->take, "Name of the bowed take")->required()->type_name("NAME");
   add_table_options(*command, given->output);
   command->get_option("--out")->required(false)->description("Table to write, one row a sample; - for standard output");
-  command->add_option("--pass", given->how.pass_Hz, "End of the pass band; 0.30 of the sampling rate, or two thirds of --stop, if not given")->type_name("HZ")->check(CLI::PositiveNumber);
-  command->add_option("--stop", given->how.stop_Hz, "Nothing is left from here on; 0.45 of the sampling rate, or 1.5 times --pass, if not given")->type_name("HZ")->check(CLI::PositiveNumber);
+  command
+      ->add_option("--pass", given->how.pass_Hz,
+                   "End of the pass band; 0.30 of the sampling rate, or two thirds of --stop, if not given")
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--stop", given->how.stop_Hz,
+                   "Nothing is left from here on; 0.45 of the sampling rate, or 1.5 times --pass, if not given")
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--no-fine-tune", given->no_fine_tune, "Leave delays and gains as the plucks gave them");
   command->add_flag("--paper", given->how.paper, "The processing of Woodhouse, Schumacher & Garoff (2000), for comparison");
-  command->add_flag("--frequency-domain", given->how.frequency_domain, "Eqs. (10): the most nearly periodic stretch only, terminations as declared");
-  command->add_option("--calibration", given->calibration, "Take the calibration from a file of `rosin fit --json`")->type_name("FILE.json");
-  command->add_option("--model", given->model, "Reconstruct with the corrected model of `rosin diagnose --json`")->type_name("FILE.json")->excludes("--calibration")->excludes("--paper")->excludes("--frequency-domain");
-  command->add_option("--slips", given->slips, "Write a table of the slips, one row each: loops of force against velocity, track along the rod")->type_name("FILE.csv");
+  command->add_flag("--frequency-domain", given->how.frequency_domain,
+                    "Eqs. (10): the most nearly periodic stretch only, terminations as declared");
+  command->add_option("--calibration", given->calibration, "Take the calibration from a file of `rosin fit --json`")
+      ->type_name("FILE.json");
+  command->add_option("--model", given->model, "Reconstruct with the corrected model of `rosin diagnose --json`")
+      ->type_name("FILE.json")
+      ->excludes("--calibration")
+      ->excludes("--paper")
+      ->excludes("--frequency-domain");
+  command
+      ->add_option("--slips", given->slips,
+                   "Write a table of the slips, one row each: loops of force against velocity, track along the rod")
+      ->type_name("FILE.csv");
   command->add_option("--report", given->report, "Write a page with figures (needs gnuplot)")->type_name("FILE.html");
-  command->add_option("--json", given->json_file, "Write a summary to FILE; without one, or with -, to standard output")->expected(0, 1)->default_str("-")->type_name("FILE");
+  command->add_option("--json", given->json_file, "Write a summary to FILE; without one, or with -, to standard output")
+      ->expected(0, 1)
+      ->default_str("-")
+      ->type_name("FILE");
   command->add_flag("--strict", given->strict, "Exit with 1 on warnings as well");
   command->footer(
       "Calibrates from the plucks of the rig, tunes delays and relative gain to the take within what the plucks allow,\n"

@@ -51,7 +51,8 @@ std::vector<double> band_limited(const std::vector<double>& x, const take_recons
 }
 
 /// channel = scale * result, means out.
-channel_comparison compare(const std::string& name, const std::string& what, const std::vector<double>& channel, const std::vector<double>& result) {
+channel_comparison compare(const std::string& name, const std::string& what, const std::vector<double>& channel,
+                           const std::vector<double>& result) {
   double n = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
   const auto each = [&](auto use) {
     for (std::size_t i = 0; i < channel.size(); ++i)
@@ -104,14 +105,16 @@ void add_comparisons(const rosin::rig& rig, const rosin::take& take, const check
   for (const auto& s : read.signals.signals) {
     if (s.sensor.quantity != rosin::quantity::string_velocity) continue;
     if (s.sensor.position && std::abs(*s.sensor.position - contact) > 0.02) {
-      r.warnings.push_back("channel " + s.sensor.name + " measures at " + in_digits(*s.sensor.position) + ", the contact is at " + in_digits(contact) + ": not compared");
+      r.warnings.push_back("channel " + s.sensor.name + " measures at " + in_digits(*s.sensor.position) + ", the contact is at " +
+                           in_digits(contact) + ": not compared");
       continue;
     }
     const auto limited = band_limited(s.values, r);
     const auto one = compare(s.sensor.name, "velocity at the contact", limited, r.velocity_m_s);
     r.comparisons.push_back(one);
     if (std::abs(one.correlation) < 0.9)
-      r.warnings.push_back("channel " + s.sensor.name + " agrees badly with the reconstructed velocity (correlation " + in_digits(one.correlation) + ")");
+      r.warnings.push_back("channel " + s.sensor.name + " agrees badly with the reconstructed velocity (correlation " +
+                           in_digits(one.correlation) + ")");
     if (one.scale == 0 || !r.magnet_m_s.empty()) continue;
     r.magnet_m_s = limited;
     for (double& v : r.magnet_m_s) v /= one.scale;

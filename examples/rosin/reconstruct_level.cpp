@@ -14,7 +14,8 @@ namespace {
 std::optional<rosin::dc_estimate> level_by_law(const rosin::rig& rig, const take_reconstruction& r, double rod_m_s) {
   const auto& at = r.result.used.at;
   rosin::contact_take t;
-  t.name = r.take, t.force_N = r.force_N, t.velocity_m_s = r.velocity_m_s, t.rate_Hz = r.rate_Hz, t.rod_speed_m_s = rod_m_s, t.normal_force_N = *r.normal_force_N;
+  t.name = r.take, t.force_N = r.force_N, t.velocity_m_s = r.velocity_m_s, t.rate_Hz = r.rate_Hz, t.rod_speed_m_s = rod_m_s,
+  t.normal_force_N = *r.normal_force_N;
   t.velocity_near_m_s = r.velocity_near_m_s, t.velocity_far_m_s = r.velocity_far_m_s;
   t.delay_s = at.delay_s, t.stiffness_s2 = at.stiffness_s2, t.impedance_Ns_m = at.impedance_Ns_m, t.edge_Hz = r.limits.stop_Hz;
   const auto middle = (r.known.begin + r.known.end) / 2;
@@ -39,7 +40,8 @@ void estimate_level(const rosin::rig& rig, take_reconstruction& r) {
   r.dc = rosin::estimate_dc_level(r.force_N, r.velocity_m_s, rod, *r.normal_force_N);
   r.dc_from = "usual-friction";
   if (!r.dc.available) return;
-  if (const auto better = level_by_law(rig, r, rod); better && better->sd_N < r.dc.sd_N) r.dc = *better, r.dc_from = "thermal-law";
+  if (const auto better = level_by_law(rig, r, rod); better && better->sd_N < r.dc.sd_N)
+    r.dc = *better, r.dc_from = "thermal-law";
 }
 
 }  // namespace tool

@@ -94,7 +94,8 @@ struct recorded_ends {
 }
 
 inline void keep_only(rosin::bow_motion<double>& m, rosin::sample_range more) {
-  const rosin::sample_range known{std::max(m.known.begin, more.begin), std::max(std::max(m.known.begin, more.begin), std::min(m.known.end, more.end))};
+  const rosin::sample_range known{std::max(m.known.begin, more.begin),
+                                  std::max(std::max(m.known.begin, more.begin), std::min(m.known.end, more.end))};
   for (auto* row : {&m.force_near_N, &m.force_far_N, &m.velocity_near_m_s, &m.velocity_far_m_s})
     for (std::size_t i = 0; i < row->size(); ++i)
       if (i < known.begin || i >= known.end) (*row)[i] = std::numeric_limits<double>::quiet_NaN();
@@ -140,8 +141,9 @@ template <class Physics>
     }
   const std::array<double, 2> noise{out.used.noise_N[0] / out.used.gain[0], out.used.noise_N[1] / out.used.gain[1]};
   out.sd = rosin::uncertainty<Physics>(out.used, out.motion, slopes, noise, in.limits, in.rate_Hz, covariance);
-  auto periodic = rosin::reconstruct_periodic<Physics>(out.used.at, views[0], views[1], in.limits, in.rate_Hz, any_reflection{in.ends[0].reflection},
-                                                       any_reflection{in.ends[1].reflection});
+  auto periodic =
+      rosin::reconstruct_periodic<Physics>(out.used.at, views[0], views[1], in.limits, in.rate_Hz,
+                                           any_reflection{in.ends[0].reflection}, any_reflection{in.ends[1].reflection});
   if (periodic) out.periodic = *std::move(periodic);
   else out.why_not_periodic = periodic.error();
   return out;

@@ -3,6 +3,8 @@
 
 namespace tool {
 
-processed process_moving_ends(const process_input& in) { return detail::process<rosin::with_moving_ends<rosin::full_physics>>(in); }
+processed process_moving_ends(const process_input& in) {
+  return detail::process<rosin::with_moving_ends<rosin::full_physics>>(in);
+}
 
 }  // namespace tool

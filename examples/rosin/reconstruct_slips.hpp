@@ -12,8 +12,9 @@
 namespace tool {
 
 struct take_slips {
-  std::vector<double> relative_m_s;  ///< surface (centre, where torsion is not modelled) less rod; NaN: unknown, or the rod has not caught the string yet
-  std::vector<double> place_m;       ///< of the contact on the rod
+  /// surface (centre, where torsion is not modelled) less rod; NaN: unknown, or the rod has not caught the string yet
+  std::vector<double> relative_m_s;
+  std::vector<double> place_m;  ///< of the contact on the rod
   rosin::contact_phases phases;
   std::vector<rosin::slip_loop> loops;
   rosin::loop_verdict verdict;
@@ -27,6 +28,7 @@ struct take_slips {
 [[nodiscard]] json to_json(const take_slips& s);
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> facts_of(const take_slips& s, const take_reconstruction& r);
 /// Loops and track of a stretch of the take, where there are any.
-[[nodiscard]] std::vector<figure> figures_of(const take_slips& s, const take_reconstruction& r, std::size_t begin, std::size_t end);
+[[nodiscard]] std::vector<figure> figures_of(const take_slips& s, const take_reconstruction& r, std::size_t begin,
+                                             std::size_t end);
 
 }  // namespace tool

@@ -12,7 +12,8 @@ void limit_loss(rosin::calibration& c, const rosin::band& limits, std::vector<st
   const double f = limits.stop_Hz, longest = std::max(c.at.delay_s[0], c.at.delay_s[1]);
   const double gain = std::exp(std::numbers::pi * f * longest * c.at.loss.inverse_q(f));
   if (gain > 0.5 && gain < 5) return;
-  warnings.push_back("the fitted loss would change the band's end by a factor of " + in_digits(gain, "%.2g") + " on its way: no string does that; taken as Q = 1000");
+  warnings.push_back("the fitted loss would change the band's end by a factor of " + in_digits(gain, "%.2g") +
+                     " on its way: no string does that; taken as Q = 1000");
   c.at.loss = {rosin::detail::default_quality, 0, 0};
   for (const Eigen::Index p : {3, 4}) {
     c.covariance.row(p).setZero();
@@ -21,13 +22,15 @@ void limit_loss(rosin::calibration& c, const rosin::band& limits, std::vector<st
 }
 
 /// The calibration for this contact, moved from the nearest pluck where none was at the same place.
-rosin::calibration calibration_at(const calibration_set& set, double declared, double position_sd, std::vector<std::string>& warnings) {
+rosin::calibration calibration_at(const calibration_set& set, double declared, double position_sd,
+                                  std::vector<std::string>& warnings) {
   std::size_t nearest = 0;
   for (std::size_t i = 1; i < set.at.size(); ++i)
     if (std::abs(set.declared[i] - declared) < std::abs(set.declared[nearest] - declared)) nearest = i;
   rosin::calibration c = set.at[nearest];
   if (c.at.stiffness_s2 < 0) {  // an ideal string, but for the fit's error; or no string at all
-    if (c.at.stiffness_s2 * c.at.stiffness_s2 > 9 * c.covariance(2, 2)) warnings.emplace_back("the fitted bending stiffness is negative beyond its error: taken as 0");
+    if (c.at.stiffness_s2 * c.at.stiffness_s2 > 9 * c.covariance(2, 2))
+      warnings.emplace_back("the fitted bending stiffness is negative beyond its error: taken as 0");
     c.at.stiffness_s2 = 0;
   }
   const double shift = declared - set.declared[nearest];
@@ -40,8 +43,9 @@ rosin::calibration calibration_at(const calibration_set& set, double declared, d
   c.covariance(1, 1) += doubt * doubt;
   c.covariance(0, 1) -= doubt * doubt;
   c.covariance(1, 0) -= doubt * doubt;
-  warnings.push_back("no pluck was made at the contact's position " + in_digits(declared, "%.6g") + ": the delays are those of the plucks at " +
-                     in_digits(set.declared[nearest], "%.6g") + ", moved by the declared distance");
+  warnings.push_back("no pluck was made at the contact's position " + in_digits(declared, "%.6g") +
+                     ": the delays are those of the plucks at " + in_digits(set.declared[nearest], "%.6g") +
+                     ", moved by the declared distance");
   return c;
 }
 
@@ -52,9 +56,11 @@ rosin::outcome<rosin::band> band_of(const take_options& how, double rate_Hz, dou
   else if (how.stop_Hz > 0) limits = {how.stop_Hz / 1.5, how.stop_Hz};
   const std::string given = "--pass " + in_digits(limits.pass_Hz, "%.0f") + " --stop " + in_digits(limits.stop_Hz, "%.0f") + ": ";
   if (!(limits.pass_Hz < limits.stop_Hz && limits.stop_Hz <= 0.5 * rate_Hz))
-    return rosin::failure{given + "pass has to be below stop, and stop not above half the sampling rate of " + in_digits(rate_Hz, "%.0f") + " Hz"};
+    return rosin::failure{given + "pass has to be below stop, and stop not above half the sampling rate of " +
+                          in_digits(rate_Hz, "%.0f") + " Hz"};
   if (limits.pass_Hz < fundamental_Hz || limits.stop_Hz - limits.pass_Hz < fundamental_Hz)
-    return rosin::failure{given + "pass, and the distance from pass to stop, have to be at least the fundamental, " + in_digits(fundamental_Hz, "%.0f") + " Hz"};
+    return rosin::failure{given + "pass, and the distance from pass to stop, have to be at least the fundamental, " +
+                          in_digits(fundamental_Hz, "%.0f") + " Hz"};
   return limits;
 }
 
@@ -68,7 +74,9 @@ std::optional<rosin::failure> set_ends(const rosin::rig& rig, take_reconstructio
     in.ends[e] = *std::move(end);
     if (!to_be_fitted(rig, e)) continue;
     in.ends[e] = end_of_modes(fitted.end(e));
-    if (!fitted.fitted[e]) r.warnings.push_back("terminations." + name + " = \"fit\": the calibration says nothing of it: taken as rigid; fit the plucks again");
+    if (!fitted.fitted[e])
+      r.warnings.push_back("terminations." + name +
+                           " = \"fit\": the calibration says nothing of it: taken as rigid; fit the plucks again");
     else if (!in.ends[e]) r.assumed.push_back("terminations." + name + " = \"fit\": the plucks show no motion of it: rigid");
   }
   if (fitted.modes.empty() || !(in.ends[0] || in.ends[1])) return std::nullopt;
@@ -76,7 +84,9 @@ std::optional<rosin::failure> set_ends(const rosin::rig& rig, take_reconstructio
   const Eigen::Index waveform = rosin::waveform_parameters, modes = fitted.covariance.rows();
   std::size_t nearest = 0;
   for (std::size_t i = 1; i < r.calibration.declared.size(); ++i)
-    if (std::abs(r.calibration.at[i].position - r.before.position) < std::abs(r.calibration.at[nearest].position - r.before.position)) nearest = i;
+    if (std::abs(r.calibration.at[i].position - r.before.position) <
+        std::abs(r.calibration.at[nearest].position - r.before.position))
+      nearest = i;
   in.joint_covariance = Eigen::MatrixXd::Zero(waveform + modes, waveform + modes);
   in.joint_covariance.topLeftCorner(waveform, waveform) = r.before.covariance;
   in.joint_covariance.bottomRightCorner(modes, modes) = fitted.covariance;
@@ -99,14 +109,16 @@ rosin::outcome<process_input> input_of(const rosin::rig& rig, const checked_take
       rosin::restore_ac_coupled(std::span(x), corner, r.rate_Hz);
     } else if (std::abs(offset.value) > 5 * offset.sd && std::abs(offset.value) > 1e-4) {
       for (double& v : x) v -= offset.value;
-      r.assumed.push_back("offset of channel " + name + " = " + in_digits(1e3 * offset.value) + " mN, that of the plucks: taken out");
+      r.assumed.push_back("offset of channel " + name + " = " + in_digits(1e3 * offset.value) +
+                          " mN, that of the plucks: taken out");
     }
   }
   return in;
 }
 
 /// With the corrected model of a diagnosis, or as the rig file declares it.
-std::optional<rosin::failure> process(const rosin::rig& rig, const rosin::take& take, const checked_take& read, take_reconstruction& r) {
+std::optional<rosin::failure> process(const rosin::rig& rig, const rosin::take& take, const checked_take& read,
+                                      take_reconstruction& r) {
   if (r.how.model) {
     auto made = process_with_model(*r.how.model, rig, take.name, r.limits, r.warnings);
     if (!made) return rosin::failure{made.error()};
@@ -127,7 +139,8 @@ std::vector<double> unrolled(const std::vector<double>& one_period, const rosin:
   std::vector<std::complex<double>> bins(N / 2);
   for (std::size_t k = 0; k < bins.size(); ++k)
     for (std::size_t n = 0; n < N; ++n)
-      bins[k] += one_period[n] * std::polar((k == 0 ? 1.0 : 2.0) / static_cast<double>(N), -2 * std::numbers::pi * static_cast<double>(k * n % N) / static_cast<double>(N));
+      bins[k] += one_period[n] * std::polar((k == 0 ? 1.0 : 2.0) / static_cast<double>(N),
+                                            -2 * std::numbers::pi * static_cast<double>(k * n % N) / static_cast<double>(N));
   std::vector<double> out(samples, nan);
   for (std::size_t i = part.begin; i < std::min(part.end, samples); ++i) {
     const double turn = 2 * std::numbers::pi * static_cast<double>(i - part.begin) / part.period;
@@ -155,18 +168,20 @@ void take_frequency_domain(take_reconstruction& r) {
   const auto& p = *r.result.periodic;
   const std::size_t n = r.result.motion.force_near_N.size();
   r.force_near_N = unrolled(p.force_near_N, p.source, n), r.force_far_N = unrolled(p.force_far_N, p.source, n);
-  r.velocity_near_m_s = unrolled(p.velocity_near_m_s, p.source, n), r.velocity_far_m_s = unrolled(p.velocity_far_m_s, p.source, n);
+  r.velocity_near_m_s = unrolled(p.velocity_near_m_s, p.source, n),
+  r.velocity_far_m_s = unrolled(p.velocity_far_m_s, p.source, n);
   r.known = {p.source.begin, std::min(p.source.end, n)};
   for (const auto& b : p.regularised)
-    r.warnings.push_back("a termination all but follows the string from " + in_digits(b.pass_Hz, "%.0f") + " to " + in_digits(b.stop_Hz, "%.0f") +
-                         " Hz: the division was regularised there");
+    r.warnings.push_back("a termination all but follows the string from " + in_digits(b.pass_Hz, "%.0f") + " to " +
+                         in_digits(b.stop_Hz, "%.0f") + " Hz: the division was regularised there");
 }
 
 void compare_domains(take_reconstruction& r) {
   if (!r.result.periodic) return;
   const auto& p = *r.result.periodic;
   const auto& m = r.result.motion;
-  const auto periodic = mean_of(unrolled(p.force_near_N, p.source, m.force_near_N.size()), unrolled(p.force_far_N, p.source, m.force_near_N.size()));
+  const auto periodic = mean_of(unrolled(p.force_near_N, p.source, m.force_near_N.size()),
+                                unrolled(p.force_far_N, p.source, m.force_near_N.size()));
   r.domains_differ = rosin::consistency_delta(mean_of(m.force_near_N, m.force_far_N), periodic);
   r.period_s = p.source.period / r.rate_Hz;
   r.steady_begin = p.source.begin, r.steady_end = p.source.end;
@@ -187,11 +202,13 @@ void finish_columns(take_reconstruction& r) {
 void add_torsion(const rosin::rig& rig, take_reconstruction& r) {
   if (!rig.torsion) return;
   const auto& c = r.result.used.at;
-  const auto waveguide = rosin::torsion_of(c.delay_s, c.impedance_Ns_m, rig.torsion->speed_ratio, rig.torsion->impedance_ratio, rig.torsion->q);
+  const auto waveguide =
+      rosin::torsion_of(c.delay_s, c.impedance_Ns_m, rig.torsion->speed_ratio, rig.torsion->impedance_ratio, rig.torsion->q);
   const auto& m = r.result.motion;
   const auto begin = static_cast<std::ptrdiff_t>(m.known.begin), end = static_cast<std::ptrdiff_t>(m.known.end);
   const auto force = mean_of(m.force_near_N, m.force_far_N), velocity = mean_of(m.velocity_near_m_s, m.velocity_far_m_s);
-  const std::vector<double> rolled = rosin::torsion_velocity(waveguide, std::vector<double>(force.begin() + begin, force.begin() + end), r.rate_Hz);
+  const std::vector<double> rolled =
+      rosin::torsion_velocity(waveguide, std::vector<double>(force.begin() + begin, force.begin() + end), r.rate_Hz);
   const auto memory = static_cast<std::size_t>(waveguide.memory_s() * r.rate_Hz);
   double early = 0, all = 0;
   const std::size_t first = std::min<std::size_t>(m.known.begin + memory, m.known.end);
@@ -226,15 +243,19 @@ void judge(const rosin::rig& rig, take_reconstruction& r) {
   if (const auto& t = r.result.tuning; t && t->sigmas > 5) {
     const double stretch = (t->shift[0] + t->shift[1]) / one_way, length = rig.string.length_m.value_or(0);
     const double moved = (t->shift[0] - r.before.position * (t->shift[0] + t->shift[1])) / one_way;
-    r.warnings.push_back("the search had to move delays and gain ratio by " + in_digits(t->sigmas, "%.1f") + " standard deviations (tension " +
-                         in_digits(-200 * stretch, "%+.3f") + " %, contact " + (length > 0 ? in_digits(1e3 * length * moved, "%+.3f") + " mm" : in_digits(moved, "%+.5f") + " of the length") +
-                         ", gain ratio " + in_digits(100 * t->shift[5], "%+.3f") + " %): tension or contact moved since the plucks, or the string does more than the model");
+    r.warnings.push_back(
+        "the search had to move delays and gain ratio by " + in_digits(t->sigmas, "%.1f") + " standard deviations (tension " +
+        in_digits(-200 * stretch, "%+.3f") + " %, contact " +
+        (length > 0 ? in_digits(1e3 * length * moved, "%+.3f") + " mm" : in_digits(moved, "%+.5f") + " of the length") +
+        ", gain ratio " + in_digits(100 * t->shift[5], "%+.3f") +
+        " %): tension or contact moved since the plucks, or the string does more than the model");
   }
   if (r.delta_force > 0.03)
     r.warnings.push_back("the two versions of the force differ by Delta = " + in_digits(r.delta_force, "%.3f") +
                          ": string or sensors do what the model does not hold; the standard deviations count that in");
   if (r.period_s > 0 && std::abs(r.period_s * r.calibration.fundamental_Hz - 1) > 0.06)
-    r.warnings.push_back("the take repeats at " + in_digits(1 / r.period_s, "%.2f") + " Hz, the plucks at " + in_digits(r.calibration.fundamental_Hz, "%.2f") +
+    r.warnings.push_back("the take repeats at " + in_digits(1 / r.period_s, "%.2f") + " Hz, the plucks at " +
+                         in_digits(r.calibration.fundamental_Hz, "%.2f") +
                          " Hz: check the sample rate in the file's header, or it is no motion of one slip a period");
   if (!r.result.periodic) r.warnings.push_back("no periodic stretch: " + r.result.why_not_periodic);
   if (r.rod_m_s.empty()) r.warnings.push_back("speed_m_s of the take is not given: slips cannot be told from sticking");
@@ -242,10 +263,13 @@ void judge(const rosin::rig& rig, take_reconstruction& r) {
 
 std::optional<rosin::failure> cannot_start(const rosin::take& take, const checked_take& read, const take_reconstruction& r) {
   if (!std::isfinite(r.before.at.impedance_Ns_m))
-    return rosin::failure{take.name + ": length_m and tension_N (or impedance_Ns_m) are needed: without the wave impedance there is no velocity in m/s"};
+    return rosin::failure{
+        take.name +
+        ": length_m and tension_N (or impedance_Ns_m) are needed: without the wave impedance there is no velocity in m/s"};
   const double needed = 4 * (r.before.at.delay_s[0] + r.before.at.delay_s[1]);
   if (r.sampled_s > needed) return std::nullopt;
-  return rosin::failure{read.signals.file + ": take " + take.name + ": " + in_digits(1e3 * r.sampled_s) + " ms are too short: nothing is known within a transit time of either end"};
+  return rosin::failure{read.signals.file + ": take " + take.name + ": " + in_digits(1e3 * r.sampled_s) +
+                        " ms are too short: nothing is known within a transit time of either end"};
 }
 
 }  // namespace
@@ -269,18 +293,25 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   const auto position = rig.position_of(take);
   if (!position)
     return rosin::failure{rig.file + ":" + std::to_string(take.line) + ": take \"" + take.name + "\": " +
-                          (take.position_profile.empty() ? "the position of the contact is unknown" : "the bow travels along the string; the force is reconstructed at one place only")};
-  r.before = calibration_at(calibration, *position, rig.position_tolerance.value_or(rosin::detail::default_position_tolerance) / 2, r.warnings);
+                          (take.position_profile.empty()
+                               ? "the position of the contact is unknown"
+                               : "the bow travels along the string; the force is reconstructed at one place only")};
+  r.before = calibration_at(calibration, *position,
+                            rig.position_tolerance.value_or(rosin::detail::default_position_tolerance) / 2, r.warnings);
   if (const auto why = cannot_start(take, read, r)) return *why;
   limit_loss(r.before, r.limits, r.warnings);
   if (calibration.rate_Hz != r.rate_Hz)
-    r.warnings.push_back("recorded at " + in_digits(r.rate_Hz, "%.0f") + " Hz, the plucks at " + in_digits(calibration.rate_Hz, "%.0f") + " Hz");
+    r.warnings.push_back("recorded at " + in_digits(r.rate_Hz, "%.0f") + " Hz, the plucks at " +
+                         in_digits(calibration.rate_Hz, "%.0f") + " Hz");
   if (const auto why = process(rig, take, read, r)) return *why;
-  if (r.result.ends_settle) r.assumed.emplace_back("the take begins in motion: nothing is given until the terminations have forgotten what was before");
+  if (r.result.ends_settle)
+    r.assumed.emplace_back("the take begins in motion: nothing is given until the terminations have forgotten what was before");
   const auto& m = r.result.motion;
   if (m.known.end <= m.known.begin)
-    return rosin::failure{read.signals.file + ": take " + take.name + ": " + std::to_string(read.signals.frames()) + " samples are too few: the kernels reach beyond them everywhere"};
-  if (how.frequency_domain && !r.result.periodic) return rosin::failure{take.name + ": --frequency-domain: " + r.result.why_not_periodic};
+    return rosin::failure{read.signals.file + ": take " + take.name + ": " + std::to_string(read.signals.frames()) +
+                          " samples are too few: the kernels reach beyond them everywhere"};
+  if (how.frequency_domain && !r.result.periodic)
+    return rosin::failure{take.name + ": --frequency-domain: " + r.result.why_not_periodic};
   if (how.frequency_domain) take_frequency_domain(r);
   else take_time_domain(r);
   compare_domains(r);

@@ -33,11 +33,12 @@ struct take_reconstruction {
   rosin::band limits{0, 0};
   take_options how;
   calibration_set calibration;
-  rosin::calibration before;             ///< fine tuning
+  rosin::calibration before;  ///< fine tuning
   processed result;
   /// What goes into the file, as long as the take, NaN where unknown: of the domain that was asked for.
-  std::vector<double> force_N, velocity_m_s, force_near_N, force_far_N, velocity_near_m_s, velocity_far_m_s, force_sd_N, velocity_sd_m_s;
-  std::vector<double> torsion_m_s;       ///< empty where [torsion] is not declared
+  std::vector<double> force_N, velocity_m_s, force_near_N, force_far_N, velocity_near_m_s, velocity_far_m_s, force_sd_N,
+      velocity_sd_m_s;
+  std::vector<double> torsion_m_s;  ///< empty where [torsion] is not declared
   rosin::sample_range known{0, 0};
   double delta_force = 0, delta_velocity = 0;
   std::optional<double> domains_differ;  ///< Delta between time and frequency domain, where both are known
@@ -46,24 +47,26 @@ struct take_reconstruction {
   std::optional<double> normal_force_N;
   bool ac_coupled = false;
   rosin::dc_estimate dc;
-  std::string dc_from;                   ///< "thermal-law" or "usual-friction"
-  std::optional<std::size_t> lifted;     ///< sample from which on the bow is off
+  std::string dc_from;                     ///< "thermal-law" or "usual-friction"
+  std::optional<std::size_t> lifted;       ///< sample from which on the bow is off
   std::optional<rosin::free_decay> decay;  ///< of the string after that
   std::vector<std::pair<std::size_t, std::size_t>> slips;
   std::size_t steady_begin = 0, steady_end = 0;  ///< where the motion is most nearly periodic
   double period_s = 0;
   std::vector<channel_comparison> comparisons;
-  std::vector<double> magnet_m_s;        ///< of a channel that measures the velocity at the contact, scaled to the result
+  std::vector<double> magnet_m_s;  ///< of a channel that measures the velocity at the contact, scaled to the result
   std::vector<std::string> assumed, warnings;
 
   [[nodiscard]] double time_s(std::size_t i) const { return static_cast<double>(i) / rate_Hz; }
   [[nodiscard]] double slips_per_period() const;
 };
 
-[[nodiscard]] rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, const rosin::take& take, const checked_take& read,
-                                                                   const calibration_set& calibration, const take_options& how);
+[[nodiscard]] rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, const rosin::take& take,
+                                                                   const checked_take& read, const calibration_set& calibration,
+                                                                   const take_options& how);
 
-/// The level that AC-coupled sensors lost: by a fitted law of friction where that knows zero, otherwise by what friction usually is.
+/// The level that AC-coupled sensors lost: by a fitted law of friction where that knows zero, otherwise by what friction usually
+/// is.
 void estimate_level(const rosin::rig& rig, take_reconstruction& r);
 
 /// Whether the bow was lifted, and what the string's free decay after that says of pitch and loss.

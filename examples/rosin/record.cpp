@@ -31,7 +31,8 @@ std::optional<rosin::failure> plan(take_plan& take, const rig_file_writer& files
   const auto rig = files.with(take);
   if (!rig) return rosin::failure{rig.error()};
   std::error_code ignored;
-  if (std::filesystem::exists(files.folder() + "/" + take.file(), ignored)) return rosin::failure{files.folder() + "/" + take.file() + ": exists already"};
+  if (std::filesystem::exists(files.folder() + "/" + take.file(), ignored))
+    return rosin::failure{files.folder() + "/" + take.file() + ": exists already"};
   return std::nullopt;
 }
 
@@ -50,14 +51,16 @@ std::vector<std::string> mend(const std::string& folder) {
 bool channels_fit(const rosin::rig& rig, const rosin::frame_format& format, std::string& why) {
   for (const auto& c : rig.channels)
     if (c.index >= format.channels) {
-      why = rig.file + ": channels." + c.name + ".index is " + std::to_string(c.index) + ", the source has " + std::to_string(format.channels) + " channel(s)";
+      why = rig.file + ": channels." + c.name + ".index is " + std::to_string(c.index) + ", the source has " +
+            std::to_string(format.channels) + " channel(s)";
       return false;
     }
   return true;
 }
 
 /// One take after the other; the first entry of `out` that is over is the last.
-std::optional<rosin::failure> record_all(const options& given, rig_file_writer& files, recorder& from, std::vector<take_report>& out) {
+std::optional<rosin::failure> record_all(const options& given, rig_file_writer& files, recorder& from,
+                                         std::vector<take_report>& out) {
   for (int i = 0; i < given.count && !stopped() && (out.empty() || !out.back().over); ++i) {
     take_plan take = given.take;
     if (auto why = plan(take, files)) return why;
@@ -82,8 +85,10 @@ exit_code tell(const options& given, const std::string& rig, const recorder& fro
   if (why) std::cerr << "rosin: " << why->message << '\n';
   json takes = json::array();
   for (const auto& r : reports) takes.push_back(to_json(r));
-  if (given.json) print({{"schema", 1}, {"rig", rig}, {"takes", takes}, {"mended", mended}, {"fullest_buffer", from.fullest_buffer()}});
-  const bool sound = std::all_of(reports.begin(), reports.end(), [](const auto& r) { return r.problems.empty() && r.frames > 0; });
+  if (given.json)
+    print({{"schema", 1}, {"rig", rig}, {"takes", takes}, {"mended", mended}, {"fullest_buffer", from.fullest_buffer()}});
+  const bool sound =
+      std::all_of(reports.begin(), reports.end(), [](const auto& r) { return r.problems.empty() && r.frames > 0; });
   return sound && !why && !reports.empty() ? exit_code::ok : exit_code::finding;
 }
 
@@ -113,15 +118,21 @@ void add_record(CLI::App& app, exit_code& result) {
   given->how.trigger.before_s = 0.1;
   CLI::App* command = app.add_subcommand("record", "Takes from a digitiser into a rig folder");
   command->add_option("RIG", given->rig, "Folder of the rig; takes join its rig.toml")->required();
-  command->add_option("--like", given->like, "For a new folder: the rig file whose string, channels and so on are taken over, without its takes")->type_name("RIG");
+  command
+      ->add_option("--like", given->like,
+                   "For a new folder: the rig file whose string, channels and so on are taken over, without its takes")
+      ->type_name("RIG");
   add_input_options(*command, given->input);
   add_take_options(*command, given->take);
   add_recorder_options(*command, given->how);
   add_sled_options(*command, given->stroke);
-  command->add_option("--count", given->count, "So many takes, one after the other")->check(CLI::Range(1, 1000))->capture_default_str();
+  command->add_option("--count", given->count, "So many takes, one after the other")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   add_json_option(*command, given->json);
-  command->footer("Samples are in the file at once and on the disk within a second; whatever happens, the take can be read.\n"
-                  "Ctrl-C ends the take. Exit status: 0 recorded; 1 recorded, but frames are missing or it broke off; 2 nothing was done.");
+  command->footer(
+      "Samples are in the file at once and on the disk within a second; whatever happens, the take can be read.\n"
+      "Ctrl-C ends the take. Exit status: 0 recorded; 1 recorded, but frames are missing or it broke off; 2 nothing was done.");
   command->callback([given, &result] { result = run(*given); });
 }
 

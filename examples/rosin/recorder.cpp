@@ -23,7 +23,9 @@ std::atomic<bool> stop_asked{false};
 /// Wall clock and this thread's share of a processor, for how long something took.
 class stop_watch {
 public:
-  [[nodiscard]] double wall_s() const noexcept { return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count(); }
+  [[nodiscard]] double wall_s() const noexcept {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+  }
   [[nodiscard]] double processor_s() const noexcept { return processor_now_s() - processor_s_; }
 
 private:
@@ -53,7 +55,8 @@ public:
       const int peak = std::clamp(static_cast<int>((rosin::decibels(l.peak) + 60) / 60 * width), 0, width);
       const int rms = std::clamp(static_cast<int>((rosin::decibels(l.rms) + 60) / 60 * width), 0, peak);
       line += " [" + std::string(static_cast<std::size_t>(rms), '=') + std::string(static_cast<std::size_t>(peak - rms), '-') +
-              std::string(static_cast<std::size_t>(width - peak), ' ') + (l.clipped > 0 ? "\x1b[7mCLIP\x1b[0m]" : in_digits(rosin::decibels(l.peak), "%4.0f") + "]");
+              std::string(static_cast<std::size_t>(width - peak), ' ') +
+              (l.clipped > 0 ? "\x1b[7mCLIP\x1b[0m]" : in_digits(rosin::decibels(l.peak), "%4.0f") + "]");
     }
     std::fputs((line + " " + more).c_str(), stderr);
     std::fflush(stderr);
@@ -69,7 +72,8 @@ private:
 /// One take in the making.
 class session {
 public:
-  session(const take_plan& take, const rosin::frame_format& format, const recorder_options& how, rig_file_writer* files, const recorder_hooks& hooks)
+  session(const take_plan& take, const rosin::frame_format& format, const recorder_options& how, rig_file_writer* files,
+          const recorder_hooks& hooks)
       : how_{how}, files_{files}, hooks_{hooks}, meter_{format}, trigger_{format, how.trigger} {
     report_.take = take;
     report_.format = format;
@@ -127,7 +131,8 @@ private:
   /// Silence in the file where frames are missing, so that time goes on counting right.
   [[nodiscard]] bool missing(std::uint64_t count) {
     problem(std::to_string(count) + " frames are missing");
-    if (static_cast<double>(count) > 600 * report_.format.sample_rate_Hz) return problem("that is too much to leave a gap for"), false;
+    if (static_cast<double>(count) > 600 * report_.format.sample_rate_Hz)
+      return problem("that is too much to leave a gap for"), false;
     report_.gaps.push_back({report_.frames, count});
     const auto width = static_cast<std::size_t>(report_.format.channels);
     const std::vector<double> silence(4096 * width, 0.0), unknown(4096 * width, nan);
@@ -183,7 +188,8 @@ private:
   [[nodiscard]] std::vector<std::string> remarks() const {
     std::vector<std::string> out;
     for (const auto& g : report_.gaps)
-      out.push_back("gap: " + std::to_string(g.length) + " frames are missing from frame " + std::to_string(g.frame) + " on; silence stands for them");
+      out.push_back("gap: " + std::to_string(g.length) + " frames are missing from frame " + std::to_string(g.frame) +
+                    " on; silence stands for them");
     return out;
   }
 
@@ -224,25 +230,47 @@ take_report recorder::record(const take_plan& take, rig_file_writer* files, cons
 }
 
 void add_recorder_options(CLI::App& command, recorder_options& given) {
-  command.add_option("--seconds", given.seconds, "Length of the take; until Ctrl-C or the source's end if left out")->type_name("S")->check(CLI::PositiveNumber);
-  command.add_option("--trigger", given.trigger.threshold, "The take begins when a channel departs from its mean by so much of full scale; 0: at once")
-      ->check(CLI::Range(0.0, 2.0))->capture_default_str();
-  command.add_option("--before", given.trigger.before_s, "What is kept of the time before the trigger")->type_name("S")->check(CLI::Range(0.0, 60.0))->capture_default_str();
+  command.add_option("--seconds", given.seconds, "Length of the take; until Ctrl-C or the source's end if left out")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--trigger", given.trigger.threshold,
+                  "The take begins when a channel departs from its mean by so much of full scale; 0: at once")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
+  command.add_option("--before", given.trigger.before_s, "What is kept of the time before the trigger")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
 }
 
 json to_json(const take_report& r) {
   json gaps = json::array();
   for (const auto& g : r.gaps) gaps.push_back({{"frame", g.frame}, {"frames", g.length}});
-  return {{"take", r.take.name}, {"file", r.take.file()}, {"frames", r.frames}, {"duration_s", r.duration_s()},
-          {"sampling_rate_Hz", r.format.sample_rate_Hz}, {"channels", r.format.channels}, {"bits", r.format.bits}, {"float", r.format.float_format},
-          {"lost_frames", r.lost()}, {"gaps", gaps}, {"clipped", r.clipped}, {"problems", r.problems},
-          {"worst_block_s", r.worst_block_s}, {"worst_block_lasts_s", r.worst_block_of_s}, {"worst_block_processor_s", r.worst_block_processor_s}, {"worst_write_s", r.worst_write_s}, {"busy", r.busy}};
+  return {{"take", r.take.name},
+          {"file", r.take.file()},
+          {"frames", r.frames},
+          {"duration_s", r.duration_s()},
+          {"sampling_rate_Hz", r.format.sample_rate_Hz},
+          {"channels", r.format.channels},
+          {"bits", r.format.bits},
+          {"float", r.format.float_format},
+          {"lost_frames", r.lost()},
+          {"gaps", gaps},
+          {"clipped", r.clipped},
+          {"problems", r.problems},
+          {"worst_block_s", r.worst_block_s},
+          {"worst_block_lasts_s", r.worst_block_of_s},
+          {"worst_block_processor_s", r.worst_block_processor_s},
+          {"worst_write_s", r.worst_write_s},
+          {"busy", r.busy}};
 }
 
 std::string summary_of(const take_report& r) {
   if (r.frames == 0) return r.take.name + ": nothing was recorded";
-  std::string out = r.take.name + ": " + in_digits(r.duration_s(), "%.3f") + " s, " + std::to_string(r.format.channels) + " channels at " +
-                    in_digits(r.format.sample_rate_Hz, "%.0f") + " Hz, " + (r.format.float_format ? "floating point" : std::to_string(r.format.bits) + " bits");
+  std::string out = r.take.name + ": " + in_digits(r.duration_s(), "%.3f") + " s, " + std::to_string(r.format.channels) +
+                    " channels at " + in_digits(r.format.sample_rate_Hz, "%.0f") + " Hz, " +
+                    (r.format.float_format ? "floating point" : std::to_string(r.format.bits) + " bits");
   if (!r.gaps.empty()) out += ", " + std::to_string(r.lost()) + " frames missing in " + std::to_string(r.gaps.size()) + " gaps";
   for (std::size_t c = 0; c < r.clipped.size(); ++c)
     if (r.clipped[c] > 0) out += ", channel " + std::to_string(c) + " at full scale " + std::to_string(r.clipped[c]) + " times";

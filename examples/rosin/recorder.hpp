@@ -18,7 +18,7 @@
 namespace tool {
 
 struct recorder_options {
-  double seconds = 0;                 ///< 0: until it is stopped
+  double seconds = 0;  ///< 0: until it is stopped
   rosin::trigger_settings trigger;
 };
 void add_recorder_options(CLI::App& command, recorder_options& given);
@@ -30,28 +30,34 @@ struct gap_in_take {
 struct take_report {
   take_plan take;
   rosin::frame_format format;
-  std::uint64_t frames = 0;           ///< in the file, with those that stand for missing ones
+  std::uint64_t frames = 0;  ///< in the file, with those that stand for missing ones
   std::vector<gap_in_take> gaps;
-  std::vector<std::uint64_t> clipped; ///< samples at full scale, by channel
-  std::vector<std::string> problems;  ///< in the order in which they came
+  std::vector<std::uint64_t> clipped;    ///< samples at full scale, by channel
+  std::vector<std::string> problems;     ///< in the order in which they came
   bool triggered = false, over = false;  ///< over: the source has ended, or the disk; no take can follow
-  double worst_block_s = 0, worst_block_of_s = 0;  ///< longest time that a block of frames took besides its writing, and how long the block itself lasts
-  double worst_block_processor_s = 0;              ///< most that the processor was at work for any block, besides its writing
-  double worst_write_s = 0;                        ///< longest time that the file system took for one write, the first with the making of the file; the frames wait in a ring meanwhile
-  double busy = 0;                    ///< share of the time that the frames' treatment took
+  /// longest time that a block of frames took besides its writing, and how long the block itself lasts
+  double worst_block_s = 0, worst_block_of_s = 0;
+  double worst_block_processor_s = 0;  ///< most that the processor was at work for any block, besides its writing
+  /// longest time that the file system took for one write, the first with the making of the file; the frames wait in a ring
+  /// meanwhile
+  double worst_write_s = 0;
+  double busy = 0;  ///< share of the time that the frames' treatment took
 
   [[nodiscard]] std::uint64_t lost() const noexcept;
-  [[nodiscard]] double duration_s() const noexcept { return format.sample_rate_Hz > 0 ? static_cast<double>(frames) / format.sample_rate_Hz : 0; }
+  [[nodiscard]] double duration_s() const noexcept {
+    return format.sample_rate_Hz > 0 ? static_cast<double>(frames) / format.sample_rate_Hz : 0;
+  }
 };
 [[nodiscard]] json to_json(const take_report& report);
 [[nodiscard]] std::string summary_of(const take_report& report);
 
 /// What others do while a take is recorded. Any of them may be empty.
 struct recorder_hooks {
-  std::function<std::optional<rosin::failure>(std::span<const double>)> frames;   ///< of the take; missing ones are NaN
-  std::function<void()> begun;                                     ///< the take's first frames are in the file
-  std::function<std::optional<std::string>(double)> over;          ///< asked at each block, with the take's time: a reason to end ("": all is well)
-  std::function<std::string()> shows;                              ///< appended to the meters' line
+  std::function<std::optional<rosin::failure>(std::span<const double>)> frames;  ///< of the take; missing ones are NaN
+  std::function<void()> begun;                                                   ///< the take's first frames are in the file
+  /// asked at each block, with the take's time: a reason to end ("": all is well)
+  std::function<std::optional<std::string>(double)> over;
+  std::function<std::string()> shows;  ///< appended to the meters' line
 };
 
 class recorder {

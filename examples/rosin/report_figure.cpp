@@ -67,7 +67,8 @@ void write_data(std::ostream& out, const std::string& name, const curve& c) {
   out << "EOD\n";
 }
 
-void write_panel(std::ostream& out, const panel& p, const std::string& name, double bottom, double top, int width, double height) {
+void write_panel(std::ostream& out, const panel& p, const std::string& name, double bottom, double top, int width,
+                 double height) {
   for (std::size_t c = 0; c < p.curves.size(); ++c) write_data(out, "$" + name + "_" + std::to_string(c), p.curves[c]);
   const auto range = [&](const char* axis, const std::optional<std::pair<double, double>>& r) {
     if (r) out << "set " << axis << "range [" << r->first << ":" << r->second << "]\n";
@@ -77,14 +78,17 @@ void write_panel(std::ostream& out, const panel& p, const std::string& name, dou
   range("y", p.y_range);
   out << "unset arrow\n";
   for (const auto& [from, to] : p.heavy)
-    out << "set arrow from first " << from << ", graph 0.955 to first " << to << ", graph 0.955 nohead lw 5 lc rgb '" << colour::slip << "'\n";
-  out << "set label 1 " << quoted(p.title) << " at screen " << 82.0 / width << ", screen " << top + 14 / height << " left noenhanced\nset key at screen "
-      << 1 - 18.0 / width << ", screen " << top + 22 / height << "\nset xlabel " << quoted(p.x_label) << " noenhanced\nset ylabel " << quoted(p.y_label) << " noenhanced\n"
-      << "set lmargin at screen " << 82.0 / width << "\nset rmargin at screen " << 1 - 18.0 / width << "\nset bmargin at screen " << bottom
-      << "\nset tmargin at screen " << top << "\nplot ";
+    out << "set arrow from first " << from << ", graph 0.955 to first " << to << ", graph 0.955 nohead lw 5 lc rgb '"
+        << colour::slip << "'\n";
+  out << "set label 1 " << quoted(p.title) << " at screen " << 82.0 / width << ", screen " << top + 14 / height
+      << " left noenhanced\nset key at screen " << 1 - 18.0 / width << ", screen " << top + 22 / height << "\nset xlabel "
+      << quoted(p.x_label) << " noenhanced\nset ylabel " << quoted(p.y_label) << " noenhanced\n"
+      << "set lmargin at screen " << 82.0 / width << "\nset rmargin at screen " << 1 - 18.0 / width << "\nset bmargin at screen "
+      << bottom << "\nset tmargin at screen " << top << "\nplot ";
   for (std::size_t c = 0; c < p.curves.size(); ++c) {
     const curve& k = p.curves[c];
-    out << (c > 0 ? ", " : "") << "$" << name << "_" << c << " using 1:2 with lines lw " << k.width << " dt " << k.dash << " lc rgb '" << k.colour << "' "
+    out << (c > 0 ? ", " : "") << "$" << name << "_" << c << " using 1:2 with lines lw " << k.width << " dt " << k.dash
+        << " lc rgb '" << k.colour << "' "
         << (k.name.empty() ? std::string{"notitle"} : "title " + quoted(k.name) + " noenhanced");
   }
   out << "\n";
@@ -94,13 +98,15 @@ void write_figure(std::ostream& out, const figure& f, std::size_t number, const 
   constexpr double above = 34, numbers = 26, label = 56;  // around each panel: title; numbers; numbers with their label
   double height = 0;
   for (const auto& p : f.panels) height += p.height;
-  out << "set terminal svg size " << f.width << "," << height << " dynamic enhanced font 'sans-serif,13' background 'white' name 'figure" << number << "'\n"
+  out << "set terminal svg size " << f.width << "," << height
+      << " dynamic enhanced font 'sans-serif,13' background 'white' name 'figure" << number << "'\n"
       << "set output '" << file << "'\nset multiplot\n";
   double from_top = 0;
   for (std::size_t i = 0; i < f.panels.size(); ++i) {
     const panel& p = f.panels[i];
     const double below = p.x_label.empty() ? numbers : label;
-    write_panel(out, p, std::string{"d"}.append(std::to_string(number)).append("_").append(std::to_string(i)), 1 - (from_top + p.height - below) / height, 1 - (from_top + above) / height, f.width, height);
+    write_panel(out, p, std::string{"d"}.append(std::to_string(number)).append("_").append(std::to_string(i)),
+                1 - (from_top + p.height - below) / height, 1 - (from_top + above) / height, f.width, height);
     from_top += p.height;
   }
   out << "unset multiplot\nunset output\n";
@@ -131,7 +137,8 @@ std::string file_text(const std::string& path) {
 
 std::optional<rosin::failure> cannot_draw() {
   if (program_on_path("gnuplot")) return std::nullopt;
-  return rosin::failure{"--report: gnuplot draws the figures, and it is not on the PATH (on Debian: apt-get install gnuplot-nox)"};
+  return rosin::failure{
+      "--report: gnuplot draws the figures, and it is not on the PATH (on Debian: apt-get install gnuplot-nox)"};
 }
 
 rosin::outcome<std::vector<std::string>> draw(const std::vector<figure>& figures) {
@@ -143,10 +150,12 @@ rosin::outcome<std::vector<std::string>> draw(const std::vector<figure>& figures
   {
     std::ofstream out{script};
     out.precision(9);
-    out << "set encoding utf8\nset border 3 lc rgb '#444444'\nset tics nomirror textcolor rgb '#222222'\nset grid lc rgb '#e4e4e4' lw 0.8 lt 1\n"
+    out << "set encoding utf8\nset border 3 lc rgb '#444444'\nset tics nomirror textcolor rgb '#222222'\nset grid lc rgb "
+           "'#e4e4e4' lw 0.8 lt 1\n"
            "set key right horizontal samplen 2.4 font ',12' maxrows 1\n"
            "set datafile missing 'NaN'\n";
-    for (std::size_t i = 0; i < figures.size(); ++i) write_figure(out, figures[i], i + 1, folder.path + "/" + std::to_string(i) + ".svg");
+    for (std::size_t i = 0; i < figures.size(); ++i)
+      write_figure(out, figures[i], i + 1, folder.path + "/" + std::to_string(i) + ".svg");
     if (!out) return rosin::failure{"--report: the temporary folder " + folder.path + " cannot be written"};
   }
   if (!run_gnuplot(*program, script, log)) return rosin::failure{"--report: gnuplot failed: " + file_text(log)};
@@ -154,7 +163,8 @@ rosin::outcome<std::vector<std::string>> draw(const std::vector<figure>& figures
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const std::string text = file_text(folder.path + "/" + std::to_string(i) + ".svg");
     const auto begin = text.find("<svg");
-    if (begin == std::string::npos || text.find("</svg>") == std::string::npos) return rosin::failure{"--report: gnuplot drew nothing: " + file_text(log)};
+    if (begin == std::string::npos || text.find("</svg>") == std::string::npos)
+      return rosin::failure{"--report: gnuplot drew nothing: " + file_text(log)};
     svg.push_back(text.substr(begin));
   }
   return svg;

@@ -15,8 +15,8 @@ namespace tool {
 
 /// The colours of all reports: what is measured at the near and far end, what is modelled, what slips, what is declared.
 namespace colour {
-inline constexpr const char *near = "#1b6ca8", *pale_near = "#8fc1e3", *far = "#d9731a", *model = "#222222", *mean = "#3b3b8f", *slip = "#8c1d40", *declared = "#5f8f3f",
-                            *faint = "#9aa0a6";
+inline constexpr const char *near = "#1b6ca8", *pale_near = "#8fc1e3", *far = "#d9731a", *model = "#222222", *mean = "#3b3b8f",
+                            *slip = "#8c1d40", *declared = "#5f8f3f", *faint = "#9aa0a6";
 }
 
 struct curve {
@@ -24,7 +24,7 @@ struct curve {
   std::vector<double> x, y;
   std::string colour;
   double width = 1.3;
-  int dash = 1;      ///< gnuplot's dash type; 1: solid
+  int dash = 1;  ///< gnuplot's dash type; 1: solid
 };
 
 struct panel {

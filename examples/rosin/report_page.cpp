@@ -37,20 +37,24 @@ void write_list(std::ostream& out, const std::vector<std::string>& lines) {
 }
 
 void write_calibration(std::ostream& out, const std::vector<calibration_row>& rows) {
-  out << "<h2>Calibration</h2>\n<table>\n<tr><th></th><th class=\"n\">value</th><th class=\"n\">random sd</th><th class=\"n\">systematic sd</th><th>unit</th></tr>\n";
+  out << "<h2>Calibration</h2>\n<table>\n<tr><th></th><th class=\"n\">value</th><th class=\"n\">random sd</th><th "
+         "class=\"n\">systematic sd</th><th>unit</th></tr>\n";
   std::string group;
   for (const auto& r : rows) {
     if (r.group != group) out << "<tr class=\"group\"><td colspan=\"5\">" << escaped(group = r.group) << "</td></tr>\n";
-    out << "<tr><td>" << escaped(r.name) << "</td><td class=\"n\">" << escaped(r.value) << "</td><td class=\"n\">" << escaped(r.random)
-        << "</td><td class=\"n\">" << escaped(r.systematic) << "</td><td>" << escaped(r.unit) << "</td></tr>\n";
+    out << "<tr><td>" << escaped(r.name) << "</td><td class=\"n\">" << escaped(r.value) << "</td><td class=\"n\">"
+        << escaped(r.random) << "</td><td class=\"n\">" << escaped(r.systematic) << "</td><td>" << escaped(r.unit)
+        << "</td></tr>\n";
   }
-  out << "</table>\n<p class=\"small\">One standard deviation each. Random: changes from fit to fit. Systematic: common to all, from the declared "
+  out << "</table>\n<p class=\"small\">One standard deviation each. Random: changes from fit to fit. Systematic: common to all, "
+         "from the declared "
          "forces, gains, tension and length.</p>\n";
 }
 
 void write_result(std::ostream& out, const report_page& page) {
   out << "<h2>Result</h2>\n<table>\n";
-  for (const auto& [what, value] : page.result) out << "<tr><td>" << escaped(what) << "</td><td>" << escaped(value) << "</td></tr>\n";
+  for (const auto& [what, value] : page.result)
+    out << "<tr><td>" << escaped(what) << "</td><td>" << escaped(value) << "</td></tr>\n";
   out << "</table>\n";
 }
 
@@ -62,7 +66,9 @@ void write_body(std::ostream& out, const report_page& page, const std::vector<st
     out << "</div>\n";
   }
   for (std::size_t i = 0; i < svg.size(); ++i)
-    out << "<figure style=\"max-width:" << page.figures[i].width << "px\">\n" << svg[i] << "\n<figcaption><strong>Figure " << i + 1 << ".</strong> " << escaped(page.figures[i].caption) << "</figcaption>\n</figure>\n";
+    out << "<figure style=\"max-width:" << page.figures[i].width << "px\">\n"
+        << svg[i] << "\n<figcaption><strong>Figure " << i + 1 << ".</strong> " << escaped(page.figures[i].caption)
+        << "</figcaption>\n</figure>\n";
   if (!page.result.empty()) write_result(out, page);
   if (!page.calibration.empty()) write_calibration(out, page.calibration);
   if (!page.notes.empty()) {
@@ -83,7 +89,8 @@ std::optional<rosin::failure> write_page(const std::string& path, bool force, co
   const auto svg = draw(page.figures);
   if (!svg) return rosin::failure{svg.error()};
   return rosin::write_file(path, force ? rosin::overwrite::allow : rosin::overwrite::refuse, [&](std::ostream& out) {
-    out << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
+    out << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+           "content=\"width=device-width, initial-scale=1\">\n<title>"
         << escaped(page.title) << "</title>\n<style>" << style << "</style>\n</head>\n<body>\n";
     write_body(out, page, *svg, from);
     out << "</body>\n</html>\n";

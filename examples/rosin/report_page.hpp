@@ -18,6 +18,7 @@ struct report_page {
 };
 
 /// Draws the figures and writes the page.
-[[nodiscard]] std::optional<rosin::failure> write_page(const std::string& path, bool force, const report_page& page, const provenance& from);
+[[nodiscard]] std::optional<rosin::failure> write_page(const std::string& path, bool force, const report_page& page,
+                                                       const provenance& from);
 
 }  // namespace tool

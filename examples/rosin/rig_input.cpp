@@ -23,7 +23,8 @@ rosin::outcome<checked_take> read_take(const rosin::rig& rig, const rosin::take&
   return checked_take{*std::move(signals), std::move(check)};
 }
 
-std::optional<checked_take> read_telling(const rosin::rig& rig, const rosin::take& take, provenance& from, std::vector<std::string>& warnings) {
+std::optional<checked_take> read_telling(const rosin::rig& rig, const rosin::take& take, provenance& from,
+                                         std::vector<std::string>& warnings) {
   auto out = read_take(rig, take, from);
   if (!out) {
     warnings.push_back(take.name + ": left out: " + out.error());
@@ -55,9 +56,12 @@ std::string sentence(const rosin::rig& rig, const rosin::finding& finding) {
 }
 
 json to_json(const rosin::finding& finding) {
-  return {{"severity", name_of(finding.level)}, {"kind", finding.kind},
-          {"take", finding.take},               {"channel", finding.channel.empty() ? json(nullptr) : json(finding.channel)},
-          {"time_s", {finding.start_s, finding.end_s}}, {"what", finding.what},
+  return {{"severity", name_of(finding.level)},
+          {"kind", finding.kind},
+          {"take", finding.take},
+          {"channel", finding.channel.empty() ? json(nullptr) : json(finding.channel)},
+          {"time_s", {finding.start_s, finding.end_s}},
+          {"what", finding.what},
           {"advice", finding.advice}};
 }
 

@@ -25,7 +25,8 @@ struct checked_take {
 [[nodiscard]] rosin::outcome<checked_take> read_take(const rosin::rig& rig, const rosin::take& take, provenance& from);
 
 /// The same, and whatever is more than a note joins the warnings; nothing where the take cannot be read at all.
-[[nodiscard]] std::optional<checked_take> read_telling(const rosin::rig& rig, const rosin::take& take, provenance& from, std::vector<std::string>& warnings);
+[[nodiscard]] std::optional<checked_take> read_telling(const rosin::rig& rig, const rosin::take& take, provenance& from,
+                                                       std::vector<std::string>& warnings);
 
 /// As read_take, but a take with an error is refused: nothing sound can be calculated from it.
 [[nodiscard]] rosin::outcome<checked_take> read_sound_take(const rosin::rig& rig, const rosin::take& take, provenance& from);

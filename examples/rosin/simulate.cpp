@@ -58,7 +58,8 @@ places find_places(const options& given, const rosin::rig& rig) {
   const std::string prefix = one_file ? truth.stem().string() + "-" : "";
   for (const auto& take : rig.takes) {
     out.recordings.push_back(out.folder / take.file);
-    out.tables.push_back(take.kind == rosin::take_kind::bow ? out.truth.parent_path() / (prefix + take.name + "." + given.format) : fs::path{});
+    out.tables.push_back(take.kind == rosin::take_kind::bow ? out.truth.parent_path() / (prefix + take.name + "." + given.format)
+                                                            : fs::path{});
   }
   return out;
 }
@@ -102,7 +103,9 @@ std::optional<rosin::failure> write_takes(const options& given, const provenance
     auto comments = from.comment_lines();
     comments.push_back("truth of take " + plan.takes[i].declared.name);
     if (auto why = make_folder_for(to.tables[i])) return why;
-    if (auto why = save({to.tables[i].string(), given.format, given.force}, truth_table(plan, takes[i].truth, std::move(comments)))) return why;
+    if (auto why =
+            save({to.tables[i].string(), given.format, given.force}, truth_table(plan, takes[i].truth, std::move(comments))))
+      return why;
   }
   return std::nullopt;
 }
@@ -120,8 +123,9 @@ std::optional<rosin::failure> write_tables_of_ends(const options& given, const r
 }
 
 /// The rig file last: whoever finds it finds all that it names.
-std::optional<rosin::failure> write_all(const options& given, const provenance& from, const rosin::rig& rig, const simulation_plan& plan,
-                                        const std::vector<simulated_take>& takes, const places& to, const std::string& declared) {
+std::optional<rosin::failure> write_all(const options& given, const provenance& from, const rosin::rig& rig,
+                                        const simulation_plan& plan, const std::vector<simulated_take>& takes, const places& to,
+                                        const std::string& declared) {
   if (auto why = write_tables_of_ends(given, rig, to)) return why;
   if (auto why = write_takes(given, from, plan, takes, to)) return why;
   std::vector<std::string> tables;
@@ -137,26 +141,30 @@ std::vector<std::string> warnings(const simulation_plan& plan, const std::vector
     const auto& name = plan.takes[i].declared.name;
     for (std::size_t c = 0; c < plan.channels.size(); ++c)
       if (takes[i].clipped[c] > 0)
-        out.push_back("take " + name + ", channel " + plan.channels[c].declared.name + ": " + std::to_string(takes[i].clipped[c]) +
-                      " samples beyond full scale; raise the scale in [channels]");
+        out.push_back("take " + name + ", channel " + plan.channels[c].declared.name + ": " +
+                      std::to_string(takes[i].clipped[c]) + " samples beyond full scale; raise the scale in [channels]");
     if (takes[i].truth.unconverged > 0)
-      out.push_back("take " + name + ": the contact's equation was not solved to tolerance in " + std::to_string(takes[i].truth.unconverged) + " steps");
+      out.push_back("take " + name + ": the contact's equation was not solved to tolerance in " +
+                    std::to_string(takes[i].truth.unconverged) + " steps");
     if (plan.takes[i].declared.kind != rosin::take_kind::bow) continue;
     const auto motion = motion_of(takes[i].truth);
     if (motion != rosin::bowed_motion::stick_slip)
-      out.push_back("take " + name + ": the string is " + name_of(motion) + " in the second half, no stick-slip motion; try another speed or normal force");
+      out.push_back("take " + name + ": the string is " + name_of(motion) +
+                    " in the second half, no stick-slip motion; try another speed or normal force");
   }
   return out;
 }
 
-void print_text(const simulation_plan& plan, const std::vector<simulated_take>& takes, const places& to, const std::vector<std::string>& warned) {
+void print_text(const simulation_plan& plan, const std::vector<simulated_take>& takes, const places& to,
+                const std::vector<std::string>& warned) {
   for (std::size_t i = 0; i < takes.size(); ++i) {
     const auto& take = plan.takes[i].declared;
-    std::cout << take.name << " (" << name_of(take.kind) << ", " << to.recordings[i].string() << "): " << in_digits(plan.duration_s) << " s at "
-              << in_digits(plan.settings.sample_rate_Hz, "%.0f") << " Hz";
+    std::cout << take.name << " (" << name_of(take.kind) << ", " << to.recordings[i].string()
+              << "): " << in_digits(plan.duration_s) << " s at " << in_digits(plan.settings.sample_rate_Hz, "%.0f") << " Hz";
     for (std::size_t c = 0; c < plan.channels.size(); ++c)
       std::cout << ", " << plan.channels[c].declared.name << " up to " << in_digits(100 * takes[i].peak_share[c], "%.0f") << " %";
-    if (take.kind == rosin::take_kind::bow) std::cout << ", " << name_of(motion_of(takes[i].truth)) << ", " << takes[i].truth.slips << " slips";
+    if (take.kind == rosin::take_kind::bow)
+      std::cout << ", " << name_of(motion_of(takes[i].truth)) << ", " << takes[i].truth.slips << " slips";
     std::cout << '\n';
   }
   for (const auto& effect : plan.effects) std::cout << "with: " << effect << '\n';
@@ -166,15 +174,21 @@ void print_text(const simulation_plan& plan, const std::vector<simulated_take>& 
   std::cout << "rig: " << to.rig.string() << "\ntruth: " << to.truth.string() << '\n';
 }
 
-json result_json(const simulation_plan& plan, const std::vector<simulated_take>& takes, const places& to, const std::vector<std::string>& warned,
-                 const provenance& from) {
-  json out{{"schema", 1}, {"provenance", from.to_json()}, {"rig", to.rig.string()}, {"truth", to.truth.string()}, {"seed", plan.seed}};
+json result_json(const simulation_plan& plan, const std::vector<simulated_take>& takes, const places& to,
+                 const std::vector<std::string>& warned, const provenance& from) {
+  json out{
+      {"schema", 1}, {"provenance", from.to_json()}, {"rig", to.rig.string()}, {"truth", to.truth.string()}, {"seed", plan.seed}};
   out["takes"] = json::array();
   for (std::size_t i = 0; i < takes.size(); ++i) {
-    json one{{"name", plan.takes[i].declared.name}, {"kind", name_of(plan.takes[i].declared.kind)}, {"file", to.recordings[i].string()}};
+    json one{{"name", plan.takes[i].declared.name},
+             {"kind", name_of(plan.takes[i].declared.kind)},
+             {"file", to.recordings[i].string()}};
     one["of_full_scale"] = json::object();
-    for (std::size_t c = 0; c < plan.channels.size(); ++c) one["of_full_scale"][plan.channels[c].declared.name] = takes[i].peak_share[c];
-    if (!to.tables[i].empty()) one.update({{"truth", to.tables[i].string()}, {"motion", name_of(motion_of(takes[i].truth))}, {"slips", takes[i].truth.slips}});
+    for (std::size_t c = 0; c < plan.channels.size(); ++c)
+      one["of_full_scale"][plan.channels[c].declared.name] = takes[i].peak_share[c];
+    if (!to.tables[i].empty())
+      one.update(
+          {{"truth", to.tables[i].string()}, {"motion", name_of(motion_of(takes[i].truth))}, {"slips", takes[i].truth.slips}});
     out["takes"].push_back(std::move(one));
   }
   if (!plan.effects.empty()) out["effects"] = plan.effects;
@@ -231,9 +245,12 @@ void add_simulate(CLI::App& app, exit_code& result) {
   CLI::App* command = app.add_subcommand("simulate", "Make the recordings that a rig file names, and the truth behind them");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
   command->add_option("--out", given->out, "Folder for the recordings and their rig.toml")->required()->type_name("FOLDER");
-  command->add_option("--truth", given->truth, "Where the truth goes: a folder, or a file that ends in .json; FOLDER-truth if left out")
+  command
+      ->add_option("--truth", given->truth,
+                   "Where the truth goes: a folder, or a file that ends in .json; FOLDER-truth if left out")
       ->type_name("FOLDER|FILE");
-  command->add_option("--model", given->model, "With the corrected model of this diagnosis (rosin diagnose --json)")->type_name("FILE");
+  command->add_option("--model", given->model, "With the corrected model of this diagnosis (rosin diagnose --json)")
+      ->type_name("FILE");
   command->add_option("--seed", given->seed, "Everything drawn at random follows from it; overrides the rig file's")
       ->check(CLI::NonNegativeNumber)
       ->type_name("NUMBER");
@@ -243,8 +260,10 @@ void add_simulate(CLI::App& app, exit_code& result) {
   add_force_option(*command, given->force);
   add_json_option(*command, given->json);
   command->footer(
-      "Plucks, quiet and bowed takes of a stiff string between ends that are rigid or move as [terminations] says (modes, or a file of admittance), with\n"
-      "torsion and the law of friction that [model] and [friction] name; sensors whose gains are off within their tolerances, noise, AC coupling and converters.\n"
+      "Plucks, quiet and bowed takes of a stiff string between ends that are rigid or move as [terminations] says (modes, or a "
+      "file of admittance), with\n"
+      "torsion and the law of friction that [model] and [friction] name; sensors whose gains are off within their tolerances, "
+      "noise, AC coupling and converters.\n"
       "[simulate] sets rate, duration, bits, noise, seed, and with nominal_scatter = true lets the string differ from what the\n"
       "file declares. The rig.toml beside the recordings tells none of that; the truth goes to another folder.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });

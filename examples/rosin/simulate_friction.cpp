@@ -63,17 +63,20 @@ declared_curve stribeck(const rosin::friction_section& f, std::vector<std::strin
 }
 
 /// Either sort of curve; with neither given, rosin's.
-rosin::outcome<declared_curve> steady_curve(const rosin::rig& rig, const rosin::friction_section& f, std::vector<std::string>& assumed) {
+rosin::outcome<declared_curve> steady_curve(const rosin::rig& rig, const rosin::friction_section& f,
+                                            std::vector<std::string>& assumed) {
   const bool by_terms = !f.terms.empty() || f.constant;
   const bool by_stribeck = f.static_coefficient || f.dynamic_coefficient || f.stribeck_speed_m_s;
   if (by_terms && by_stribeck)
-    return rosin::failure{rig.file + ": friction: terms and constant describe one curve, static_coefficient, dynamic_coefficient and "
-                                     "stribeck_speed_m_s another; give one of them"};
+    return rosin::failure{rig.file +
+                          ": friction: terms and constant describe one curve, static_coefficient, dynamic_coefficient and "
+                          "stribeck_speed_m_s another; give one of them"};
   if (f.terms.size() > declared_curve::most_terms)
-    return rosin::failure{rig.file + ": friction.terms: " + std::to_string(f.terms.size()) + " exponentials; a simulation takes " +
-                          std::to_string(declared_curve::most_terms) + " at most"};
+    return rosin::failure{rig.file + ": friction.terms: " + std::to_string(f.terms.size()) +
+                          " exponentials; a simulation takes " + std::to_string(declared_curve::most_terms) + " at most"};
   auto curve = by_stribeck ? stribeck(f, assumed) : exponentials(f, assumed);
-  if (curve.stribeck_rise < 0) return rosin::failure{rig.file + ": friction: static_coefficient is smaller than dynamic_coefficient"};
+  if (curve.stribeck_rise < 0)
+    return rosin::failure{rig.file + ": friction: static_coefficient is smaller than dynamic_coefficient"};
   if (!(curve(0).value > 0)) return rosin::failure{rig.file + ": friction: there is no friction at all"};
   return curve;
 }
@@ -103,7 +106,8 @@ rosin::outcome<friction_law> thermal_law(const rosin::rig& rig, const rosin::fri
 
 friction_law bristle_law(const rosin::friction_section& f, chosen_friction& out, std::vector<std::string>& assumed) {
   auto& b = out.bristles;
-  b.stiffness_1_m = value_or(f.bristle_stiffness_N_m, b.stiffness_1_m * out.normal_force_N, "bristle_stiffness_N_m", assumed) / out.normal_force_N;
+  b.stiffness_1_m = value_or(f.bristle_stiffness_N_m, b.stiffness_1_m * out.normal_force_N, "bristle_stiffness_N_m", assumed) /
+                    out.normal_force_N;
   b.damping_Ns_m = value_or(f.bristle_damping_Ns_m, b.damping_Ns_m, "bristle_damping_Ns_m", assumed);
   b.breakaway = value_or(f.break_away_fraction, b.breakaway, "break_away_fraction", assumed);
   b.viscous_Ns_m = f.viscous_Ns_m.value_or(0);
@@ -124,7 +128,8 @@ rosin::curve_point<double> declared_curve::operator()(double v) const noexcept {
   return out;
 }
 
-rosin::outcome<chosen_friction> choose_friction(const rosin::rig& rig, std::vector<std::string>& assumed, std::vector<std::string>& notes) {
+rosin::outcome<chosen_friction> choose_friction(const rosin::rig& rig, std::vector<std::string>& assumed,
+                                                std::vector<std::string>& notes) {
   const auto given = rig.friction.value_or(rosin::friction_section{});
   chosen_friction out;
   if (rig.model && rig.model->friction) out.model = *rig.model->friction;
@@ -142,7 +147,8 @@ rosin::outcome<chosen_friction> choose_friction(const rosin::rig& rig, std::vect
     out.law = *law;
   }
   if (out.model == friction_model::elasto_plastic) {
-    if (!(out.curve.constant > 0)) return rosin::failure{rig.file + ": friction: elasto-plastic friction needs a friction above 0 in fast sliding"};
+    if (!(out.curve.constant > 0))
+      return rosin::failure{rig.file + ": friction: elasto-plastic friction needs a friction above 0 in fast sliding"};
     out.law = bristle_law(given, out, assumed);
   }
   return out;

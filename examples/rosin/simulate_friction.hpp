@@ -29,7 +29,8 @@ struct declared_curve {
   [[nodiscard]] double convex_from() const noexcept { return stribeck_rise > 0 ? stribeck_m_s * std::sqrt(0.5) : 0.0; }
 };
 
-using friction_law = std::variant<rosin::velocity_curve<declared_curve>, rosin::thermal_plastic<double>, rosin::elasto_plastic<declared_curve>>;
+using friction_law =
+    std::variant<rosin::velocity_curve<declared_curve>, rosin::thermal_plastic<double>, rosin::elasto_plastic<declared_curve>>;
 
 /// The law, and all that is needed to say which it is.
 struct chosen_friction {
@@ -37,9 +38,9 @@ struct chosen_friction {
   rosin::friction_model model = rosin::friction_model::velocity_curve;
   declared_curve curve{};  ///< friction in steady sliding, for every law
   double ambient_C = 20;
-  rosin::contact_heat_parameters<double> heat{};          ///< thermal
-  rosin::elasto_plastic_parameters<double> bristles{};    ///< elasto-plastic
-  double normal_force_N = 0;                              ///< the one to which the law's parameters refer
+  rosin::contact_heat_parameters<double> heat{};        ///< thermal
+  rosin::elasto_plastic_parameters<double> bristles{};  ///< elasto-plastic
+  double normal_force_N = 0;                            ///< the one to which the law's parameters refer
 
   [[nodiscard]] json to_json() const;
 };

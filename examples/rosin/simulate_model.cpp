@@ -40,7 +40,9 @@ void put_hum(parameters_of& p, simulation_plan& plan) {
   const rosin::hum_line line{p("frequency_Hz"), p("amplitude_N"), 0};
   for (auto& c : plan.channels)
     if (c.declared.quantity == rosin::quantity::termination_force) c.hum.push_back(line);
-  plan.notes.emplace_back("mains-hum: a diagnosis tells neither phase nor harmonics nor the weaker channel: the fundamental, alike in both, from phase 0");
+  plan.notes.emplace_back(
+      "mains-hum: a diagnosis tells neither phase nor harmonics nor the weaker channel: the fundamental, alike in both, from "
+      "phase 0");
 }
 
 void put_ripple(const found_effect& e, parameters_of& p, simulation_plan& plan) {
@@ -59,16 +61,19 @@ void put_ac_coupling(parameters_of& p, simulation_plan& plan) {
 /// Its resonances under an end, as sympathetic_effect.hpp has them.
 void put_other_string(const found_effect& e, parameters_of& p, simulation_plan& plan) {
   constexpr double highest_Hz = 60e3;
-  const double first = p("frequency_Hz"), b = p("string_inharmonicity"), per_mass = plan.rig.string.impedance_Ns_m() / p("mass_kg");
+  const double first = p("frequency_Hz"), b = p("string_inharmonicity"),
+               per_mass = plan.rig.string.impedance_Ns_m() / p("mass_kg");
   for (int n = 1; n <= 100; ++n)
-    if (const double f = n * first * std::sqrt((1 + b * n * n) / (1 + b)); f < highest_Hz) plan.burden.string.ends[p.side(e.end)].modes.push_back({f, p("q"), per_mass * std::pow(n, p("slope"))});
+    if (const double f = n * first * std::sqrt((1 + b * n * n) / (1 + b)); f < highest_Hz)
+      plan.burden.string.ends[p.side(e.end)].modes.push_back({f, p("q"), per_mass * std::pow(n, p("slope"))});
 }
 
 /// Of one end, or of both.
 void put_clamping(const found_effect& e, parameters_of& p, simulation_plan& plan) {
   const double clamping = p("clamping");
   for (std::size_t side = 0; side < 2; ++side)
-    if (double& there = plan.burden.string.clamping[side]; e.end.empty() || p.side(e.end) == side) there = std::min(1.0, there + clamping);
+    if (double& there = plan.burden.string.clamping[side]; e.end.empty() || p.side(e.end) == side)
+      there = std::min(1.0, there + clamping);
 }
 
 /// What is found in [friction] or in the fit of the string has been put in already.
@@ -83,16 +88,23 @@ const std::map<std::string, put>& can_be_put() {
       {"frequency-dependent-loss", [](effect, get p, plan to) { to.rig.string.loss.internal_s += p("loss_internal_s"); }},
       {"air-loss", [](effect, get p, plan to) { to.rig.string.loss.air_sqrt_Hz += p("loss_air_sqrt_Hz"); }},
       {"tension-modulation", [](effect, get p, plan to) { to.burden.string.axial_stiffness_N = p("axial_stiffness_N"); }},
-      {"second-polarization", [](effect, get p, plan to) { to.burden.detuning = p("detuning"), to.burden.coupling = p("coupling"); }},
-      {"point-mass", [](effect, get p, plan to) { to.burden.string.loads.push_back({.position = p("position"), .mass_kg = p("mass_kg")}); }},
-      {"point-damper", [](effect, get p, plan to) { to.burden.string.loads.push_back({.position = p("position"), .resistance_Ns_m = p("resistance_Ns_m")}); }},
+      {"second-polarization",
+       [](effect, get p, plan to) { to.burden.detuning = p("detuning"), to.burden.coupling = p("coupling"); }},
+      {"point-mass",
+       [](effect, get p, plan to) { to.burden.string.loads.push_back({.position = p("position"), .mass_kg = p("mass_kg")}); }},
+      {"point-damper",
+       [](effect, get p, plan to) {
+         to.burden.string.loads.push_back({.position = p("position"), .resistance_Ns_m = p("resistance_Ns_m")});
+       }},
       {"support-resonance",
        [](effect e, get p, plan to) {
-         to.burden.string.ends[p.side(e.end)].modes.push_back({p("frequency_Hz"), p("q"), to.rig.string.impedance_Ns_m() / p("mass_kg")});
+         to.burden.string.ends[p.side(e.end)].modes.push_back(
+             {p("frequency_Hz"), p("q"), to.rig.string.impedance_Ns_m() / p("mass_kg")});
        }},
       {"resistive-end",
        [](effect e, get p, plan to) {
-         to.burden.string.ends[p.side(e.end)].modes.push_back(rosin::overdamped_mode(to.rig.string.impedance_Ns_m() / p("resistance_Ns_m"), p("corner_Hz"), 1e6));
+         to.burden.string.ends[p.side(e.end)].modes.push_back(
+             rosin::overdamped_mode(to.rig.string.impedance_Ns_m() / p("resistance_Ns_m"), p("corner_Hz"), 1e6));
        }},
       {"clamped-end", put_clamping},
       {"sympathetic-string", [](effect e, get p, plan to) { put_other_string(e, p, to); }},
@@ -104,18 +116,26 @@ const std::map<std::string, put>& can_be_put() {
        }},
       {"channel-skew", [](effect, get p, plan to) { to.burden.sensors.skew_s = p("skew_s"); }},
       {"channel-crosstalk", [](effect, get p, plan to) { to.burden.sensors.crosstalk = p("fraction"); }},
-      {"sensor-nonlinearity", [](effect e, get p, plan to) { to.burden.sensors.quadratic_per_N[p.side(e.channel)] = p("quadratic_per_N"); }},
+      {"sensor-nonlinearity",
+       [](effect e, get p, plan to) { to.burden.sensors.quadratic_per_N[p.side(e.channel)] = p("quadratic_per_N"); }},
       {"mains-hum", [](effect, get p, plan to) { put_hum(p, to); }},
       {"slow-release",
        [](effect, get p, plan to) {
          for (auto& take : to.takes) take.pluck.release_duration_s = p("duration_s");
        }},
       {"finite-pluck-width", [](effect, get p, plan to) { to.burden.pluck_width_m = p("width_m"); }},
-      {"phantom-partials", [](effect e, get p, plan to) { to.burden.string.sensed_stiffness_N[p.side(e.channel)] = p("sensed_axial_stiffness_N"); }},
+      {"phantom-partials",
+       [](effect e, get p, plan to) { to.burden.string.sensed_stiffness_N[p.side(e.channel)] = p("sensed_axial_stiffness_N"); }},
       {"clock-drift", [](effect, get p, plan to) { to.burden.sensors.clock_drift = p("relative"); }},
-      {"torsion", [](effect, get p, plan to) { to.rig.torsion = {p("speed_ratio"), p("impedance_ratio"), p("q")}; }},
+      {"torsion",
+       [](effect, get p, plan to) {
+         to.rig.torsion = {p("speed_ratio"), p("impedance_ratio"), p("q")};
+       }},
       {"tension-drift", [](effect, get p, plan to) { to.tension_drift = p("relative"); }},
-      {"rod-resonance", [](effect, get p, plan to) { to.burden.rod = {p("mass_kg"), p("frequency_Hz"), p("q")}; }},
+      {"rod-resonance",
+       [](effect, get p, plan to) {
+         to.burden.rod = {p("mass_kg"), p("frequency_Hz"), p("q")};
+       }},
       {"finite-contact-width", [](effect, get p, plan to) { to.burden.contact_width_m = p("width_m"); }},
       {"speed-ripple", [](effect e, get p, plan to) { put_ripple(e, p, to); }},
       {"normal-force-ripple", [](effect e, get p, plan to) { put_ripple(e, p, to); }},
@@ -133,7 +153,8 @@ std::optional<double> value_of(const diagnosed_model& model, const std::string& 
 void put_string(const diagnosed_model& model, simulation_plan& plan) {
   auto& s = plan.rig.string;
   if (const auto f = value_of(model, "fundamental_Hz")) s.tension_N *= *f / s.fundamental_Hz, s.fundamental_Hz = *f;
-  if (const auto b = value_of(model, "inharmonicity")) s.bending_stiffness_Nm2 = *b * s.tension_N * std::pow(s.length_m / std::numbers::pi, 2);
+  if (const auto b = value_of(model, "inharmonicity"))
+    s.bending_stiffness_Nm2 = *b * s.tension_N * std::pow(s.length_m / std::numbers::pi, 2);
   if (const auto d = value_of(model, "inverse_quality")) s.loss.quality = 1 / *d;
   s.loss.internal_s = value_of(model, "loss_internal_s").value_or(s.loss.internal_s);
   s.loss.air_sqrt_Hz = value_of(model, "loss_air_sqrt_Hz").value_or(s.loss.air_sqrt_Hz);
@@ -154,7 +175,8 @@ std::vector<std::pair<double, double>> fitted_positions(const diagnosed_model& m
   for (const auto& take : rig.takes) {
     const auto declared = rig.position_of(take);
     if (!declared || !model.calibration.contains("release_s of " + take.name)) continue;
-    if (std::none_of(out.begin(), out.end(), [&](const auto& p) { return p.first == *declared; })) out.emplace_back(*declared, *declared);
+    if (std::none_of(out.begin(), out.end(), [&](const auto& p) { return p.first == *declared; }))
+      out.emplace_back(*declared, *declared);
   }
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i].second = value_of(model, out.size() == 1 ? "position" : "position " + std::to_string(i + 1)).value_or(out[i].first);
@@ -165,8 +187,11 @@ void put_takes(const diagnosed_model& model, const rosin::rig& rig, simulation_p
   const auto positions = fitted_positions(model, rig);
   for (auto& take : plan.takes) {
     const double declared = rig.position_of(take.declared).value_or(take.position);
-    const auto nearest = std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) { return std::abs(a.first - declared) < std::abs(b.first - declared); });
-    if (nearest != positions.end() && take.declared.kind != rosin::take_kind::quiet) take.position = take.pluck.position = declared + nearest->second - nearest->first;
+    const auto nearest = std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
+      return std::abs(a.first - declared) < std::abs(b.first - declared);
+    });
+    if (nearest != positions.end() && take.declared.kind != rosin::take_kind::quiet)
+      take.position = take.pluck.position = declared + nearest->second - nearest->first;
     if (take.declared.kind != rosin::take_kind::pluck) continue;
     const auto of = [&](const char* name) { return value_of(model, std::string{name} + " of " + take.declared.name); };
     take.pluck.release_s = of("release_s").value_or(take.pluck.release_s);
@@ -179,7 +204,8 @@ void put_takes(const diagnosed_model& model, const rosin::rig& rig, simulation_p
 
 found_effect effect_from(const json& m) {
   found_effect out{m.at("effect").get<std::string>(), {}, {}, {}};
-  if (const auto where = m.find("where"); where != m.end()) out.end = where->value("end", ""), out.channel = where->value("channel", "");
+  if (const auto where = m.find("where"); where != m.end())
+    out.end = where->value("end", ""), out.channel = where->value("channel", "");
   for (const auto& [name, value] : m.at("parameters").items()) {
     if (value.is_object()) out.parameters[name] = value.at("value").get<double>();
     else if (value.is_number()) out.parameters[name] = value.get<double>();
@@ -193,12 +219,14 @@ rosin::outcome<diagnosed_model> read_diagnosed_model(const std::string& path) {
   std::ifstream in{path};
   const json document = json::parse(in, nullptr, false);
   const auto wrong = [&](const std::string& what) { return rosin::failure{path + ": " + what}; };
-  if (!document.is_object() || !document.contains("missing") || !document.contains("calibration") || !document["calibration"].is_object() || !document["missing"].is_array())
+  if (!document.is_object() || !document.contains("missing") || !document.contains("calibration") ||
+      !document["calibration"].is_object() || !document["missing"].is_array())
     return wrong("is no diagnosis (rosin diagnose --json writes one)");
   diagnosed_model out{path, document.value("verdict", json{}).is_string() ? document.value("verdict", "") : "", {}, {}};
   try {
     for (const auto& [name, value] : document["calibration"].items())
-      if (value.is_object() && value.contains("value") && value["value"].is_number()) out.calibration[name] = value["value"].get<double>();
+      if (value.is_object() && value.contains("value") && value["value"].is_number())
+        out.calibration[name] = value["value"].get<double>();
     for (const json& m : document["missing"]) out.effects.push_back(effect_from(m));
   } catch (const json::exception& error) {
     return wrong(std::string{"is no diagnosis: "} + error.what());
@@ -212,7 +240,9 @@ rosin::rig with_model(rosin::rig rig, const diagnosed_model& model) {
     if (e.name != "thermal-friction" && e.name != "elasto-plastic-friction") continue;
     if (!rig.model) rig.model.emplace();
     if (!rig.friction) rig.friction.emplace();
-    const auto given = [&](const char* name) { return e.parameters.contains(name) ? std::optional{e.parameters.at(name)} : std::nullopt; };
+    const auto given = [&](const char* name) {
+      return e.parameters.contains(name) ? std::optional{e.parameters.at(name)} : std::nullopt;
+    };
     rig.model->friction = e.name == "thermal-friction" ? rosin::friction_model::thermal : rosin::friction_model::elasto_plastic;
     if (const auto layer = given("layer_m")) rig.friction->layer_thickness_m = layer;
     if (const auto stiffness = given("bristle_stiffness_N_m")) rig.friction->bristle_stiffness_N_m = stiffness;
@@ -244,13 +274,16 @@ std::optional<rosin::failure> apply_model(const diagnosed_model& model, const ro
     if (how == can_be_put().end()) return rosin::failure{model.file + ": \"" + e.name + "\" cannot be simulated"};
     parameters_of p{e};
     how->second(e, p, plan);
-    if (!p.missing.empty()) return rosin::failure{model.file + ": \"" + e.name + "\" cannot be simulated: it has no " + p.missing};
+    if (!p.missing.empty())
+      return rosin::failure{model.file + ": \"" + e.name + "\" cannot be simulated: it has no " + p.missing};
     plan.effects.push_back(e.name);
   }
   for (const std::size_t c : {0U, 1U})  // a sensor that rings bends behind that, unless the diagnosis says otherwise
-    plan.burden.sensors.rings_first[c] = !value_of(model, std::string{"sensor-nonlinearity@"} + (c == 0 ? "near" : "far") + " before it rings quadratic_per_N");
+    plan.burden.sensors.rings_first[c] =
+        !value_of(model, std::string{"sensor-nonlinearity@"} + (c == 0 ? "near" : "far") + " before it rings quadratic_per_N");
   if (plan.rig.torsion.present()) std::erase(plan.notes, "no [torsion]: the string does not turn");
-  if (model.verdict == "unexplained") plan.notes.push_back(model.file + ": its verdict is \"unexplained\": something is still missing");
+  if (model.verdict == "unexplained")
+    plan.notes.push_back(model.file + ": its verdict is \"unexplained\": something is still missing");
   return std::nullopt;
 }
 

@@ -25,10 +25,12 @@ struct diagnosed_model {
 /// The file itself joins the inputs elsewhere.
 [[nodiscard]] rosin::outcome<diagnosed_model> read_diagnosed_model(const std::string& path);
 
-/// The rig with the law of friction that was found, and with rate and duration of the recordings where they are there and [simulate] is silent.
+/// The rig with the law of friction that was found, and with rate and duration of the recordings where they are there and
+/// [simulate] is silent.
 [[nodiscard]] rosin::rig with_model(rosin::rig rig, const diagnosed_model& model);
 
 /// Puts the rest into a plan made from that.
-[[nodiscard]] std::optional<rosin::failure> apply_model(const diagnosed_model& model, const rosin::rig& rig, simulation_plan& plan);
+[[nodiscard]] std::optional<rosin::failure> apply_model(const diagnosed_model& model, const rosin::rig& rig,
+                                                        simulation_plan& plan);
 
 }  // namespace tool

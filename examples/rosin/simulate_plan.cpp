@@ -19,8 +19,8 @@ using rosin::take_kind;
 using rosin::detail::sentence;
 
 constexpr double usual_rate_Hz = 128000, usual_release_s = 0.004, most_samples = 4e6;
-constexpr std::array can_simulate{"bending-stiffness",  "frequency-dependent-loss", "air-loss", "torsion",
-                                  "ac-coupling",        "thermal-friction",         "elasto-plastic-friction"};
+constexpr std::array can_simulate{"bending-stiffness", "frequency-dependent-loss", "air-loss", "torsion", "ac-coupling",
+                                  "thermal-friction",  "elasto-plastic-friction"};
 
 /// A deviation with the standard deviation given, never more than twice that.
 double deviation(const simulation_plan& plan, const std::string& name, double sd) {
@@ -57,14 +57,16 @@ void refuse_channels(const rosin::rig& rig, rosin::problem_log& log) {
     if (!c.position) continue;
     for (const auto& take : rig.takes)
       if (take.kind != take_kind::quiet && rig.position_of(take) != c.position)
-        return log.add(c.line, place + ".position", "is not the contact of take \"" + take.name + "\": the string's motion is simulated at the contact only");
+        return log.add(c.line, place + ".position",
+                       "is not the contact of take \"" + take.name + "\": the string's motion is simulated at the contact only");
   }
 }
 
 void refuse_file(const rosin::take& take, std::set<std::string>& files, rosin::problem_log& log) {
   const auto path = std::filesystem::path{take.file}.lexically_normal();
   const std::string place = "take \"" + take.name + "\".file";
-  if (path.extension() != ".wav") log.add(take.line, place, "is " + take.file + "; simulated recordings are WAV files, the name must end in .wav");
+  if (path.extension() != ".wav")
+    log.add(take.line, place, "is " + take.file + "; simulated recordings are WAV files, the name must end in .wav");
   if (leads_out(path)) log.add(take.line, place, take.file + " leads out of the folder of the rig");
   if (!files.insert(path.string()).second) log.add(take.line, place, take.file + " is the file of another take too");
 }
@@ -72,17 +74,24 @@ void refuse_file(const rosin::take& take, std::set<std::string>& files, rosin::p
 void refuse_takes(const rosin::rig& rig, double duration_s, rosin::problem_log& log) {
   std::set<std::string> files;
   for (const auto& take : rig.takes) {
-    const auto bad = [&](const char* key, const std::string& why) { log.add(take.line, "take \"" + take.name + "\"." + key, why); };
+    const auto bad = [&](const char* key, const std::string& why) {
+      log.add(take.line, "take \"" + take.name + "\"." + key, why);
+    };
     refuse_file(take, files, log);
     if (take.kind == take_kind::quiet) continue;
     if (take.position_unknown) bad("position_unknown", "a simulation has to know where the string is touched");
-    else if (!rig.position_of(take) && take.position_profile.empty()) bad("contact_position", "is missing, and there is no [contact] position");
+    else if (!rig.position_of(take) && take.position_profile.empty())
+      bad("contact_position", "is missing, and there is no [contact] position");
     if (take.kind == take_kind::pluck && !take.force_N) bad("force_N", "is missing: a simulation has to know the force");
-    if (take.kind == take_kind::bow && !take.speed_m_s && take.speed_profile_m_s.empty()) bad("speed_m_s", "is missing, and there is no profile");
-    if (take.kind == take_kind::bow && !take.normal_force_N && take.normal_force_profile_N.empty()) bad("normal_force_N", "is missing, and there is no profile");
-    if (take.start_s && !take.speed_profile_m_s.empty()) bad("start_s", "stands beside speed_profile_m_s, whose times count from the first sample");
+    if (take.kind == take_kind::bow && !take.speed_m_s && take.speed_profile_m_s.empty())
+      bad("speed_m_s", "is missing, and there is no profile");
+    if (take.kind == take_kind::bow && !take.normal_force_N && take.normal_force_profile_N.empty())
+      bad("normal_force_N", "is missing, and there is no profile");
+    if (take.start_s && !take.speed_profile_m_s.empty())
+      bad("start_s", "stands beside speed_profile_m_s, whose times count from the first sample");
     if (take.start_s.value_or(usual_release_s) >= duration_s) bad("start_s", "the take ends before; see [simulate] duration_s");
-    if (take.kind == take_kind::pluck && take.start_s && !(*take.start_s > 0)) bad("start_s", "the wire has to hold the string at the first sample");
+    if (take.kind == take_kind::pluck && take.start_s && !(*take.start_s > 0))
+      bad("start_s", "the wire has to hold the string at the first sample");
   }
 }
 
@@ -102,9 +111,12 @@ void set_recording(const rosin::rig& rig, simulation_plan& plan, rosin::problem_
   plan.settings.oversampling = std::max(4, static_cast<int>(std::ceil(1.024e6 / rate)));
   plan.settings.mode_limit_Hz = std::max(250e3, rate / 2);
   if (rate != std::round(rate)) log.add(0, "simulate.rate_Hz", "must be a whole number for a WAV file, is " + digits(rate));
-  if (2 * rig.string.fundamental_Hz >= rate) log.add(0, "simulate.rate_Hz", digits(rate) + " Hz cannot hold the fundamental of " + digits(rig.string.fundamental_Hz) + " Hz");
+  if (2 * rig.string.fundamental_Hz >= rate)
+    log.add(0, "simulate.rate_Hz",
+            digits(rate) + " Hz cannot hold the fundamental of " + digits(rig.string.fundamental_Hz) + " Hz");
   if (!(plan.duration_s * rate >= 2 && plan.duration_s * rate <= most_samples))
-    log.add(0, "simulate.duration_s", "a take must have 2 to " + digits(most_samples) + " samples, not " + digits(plan.duration_s * rate));
+    log.add(0, "simulate.duration_s",
+            "a take must have 2 to " + digits(most_samples) + " samples, not " + digits(plan.duration_s * rate));
 }
 
 /// The string as it is: as declared, or within the tolerances of that.
@@ -134,13 +146,15 @@ void set_channels(const rosin::rig& rig, simulation_plan& plan) {
   for (const auto& c : rig.channels) {  // noise is declared in newtons: other channels get the same share of full scale
     const double full = is_force(c) ? c.per_full_scale.value_or(1) : force_scale_N;
     const bool calibrated = c.per_full_scale.has_value() || c.quantity == quantity::termination_force;
-    plan.channels.push_back({c, calibrated ? 1 + deviation(plan, "gain " + c.name, gain_tolerance_of(c) / 2) : 1, plan.noise_N / full, {}});
+    plan.channels.push_back(
+        {c, calibrated ? 1 + deviation(plan, "gain " + c.name, gain_tolerance_of(c) / 2) : 1, plan.noise_N / full, {}});
   }
 }
 
 /// The place where the string is really touched: one error for each declared place.
 double true_position(const rosin::rig& rig, const rosin::take& take, const simulation_plan& plan) {
-  const double declared = take.position_profile.empty() ? rig.position_of(take).value_or(0.5) : take.position_profile.front().second;
+  const double declared =
+      take.position_profile.empty() ? rig.position_of(take).value_or(0.5) : take.position_profile.front().second;
   if (!rig.simulate || !rig.simulate->nominal_scatter) return declared;
   const double sd = rig.position_tolerance.value_or(rosin::detail::default_position_tolerance) / 2;
   return std::clamp(declared + deviation(plan, "position " + digits(declared), sd), declared / 2, (1 + declared) / 2);
@@ -158,10 +172,10 @@ true_take realise(const rosin::rig& rig, const rosin::take& take, simulation_pla
                  .duration_s = plan.duration_s};
   if (take.kind == take_kind::bow)
     static_cast<rosin::profiled_rod&>(out.rod) = {
-               .steady = {.speed_m_s = take.speed_m_s.value_or(0), .normal_force_N = take.normal_force_N.value_or(0), .start_s = begin},
-               .speed_m_s = take.speed_profile_m_s,
-               .normal_force_N = take.normal_force_profile_N,
-               .place = take.position_profile};
+        .steady = {.speed_m_s = take.speed_m_s.value_or(0), .normal_force_N = take.normal_force_N.value_or(0), .start_s = begin},
+        .speed_m_s = take.speed_profile_m_s,
+        .normal_force_N = take.normal_force_profile_N,
+        .place = take.position_profile};
   for (auto& [t, x] : out.rod.place) x = std::clamp(x + out.position - take.position_profile.front().second, x / 2, (1 + x) / 2);
   return out;
 }

@@ -32,16 +32,16 @@ struct moving_rod : rosin::profiled_rod {
 struct true_take {
   rosin::take declared;
   double position = 0;
-  rosin::modal_pluck pluck{};   ///< kind pluck
-  moving_rod rod{};             ///< kind bow
+  rosin::modal_pluck pluck{};        ///< kind pluck
+  moving_rod rod{};                  ///< kind bow
   std::array<double, 2> offset_N{};  ///< of the two forces, as recorded
 };
 
 struct simulation_plan {
   rosin::modal_rig rig{};
-  rosin::rig_burden burden{};       ///< terminations that move, and what a diagnosis has found
-  double tension_drift = 0;         ///< tension in the bowed takes / in the others - 1
-  std::vector<std::string> effects; ///< of a diagnosis
+  rosin::rig_burden burden{};        ///< terminations that move, and what a diagnosis has found
+  double tension_drift = 0;          ///< tension in the bowed takes / in the others - 1
+  std::vector<std::string> effects;  ///< of a diagnosis
   chosen_friction friction{};
   std::vector<true_channel> channels;  ///< by index
   std::vector<true_take> takes;

@@ -15,22 +15,34 @@ using samples = std::vector<double>;
 
 constexpr double loudest_share = 0.7;
 
-/// A bow that travels on a string whose ends move, and nothing else: by waves, since the modes of such a string stand at fixed places.
-rosin::outcome<rosin::modal_take> travel_on_moving_ends(const simulation_plan& plan, const true_take& take, const rosin::modal_rig& rig) {
+/// A bow that travels on a string whose ends move, and nothing else: by waves, since the modes of such a string stand at fixed
+/// places.
+rosin::outcome<rosin::modal_take> travel_on_moving_ends(const simulation_plan& plan, const true_take& take,
+                                                        const rosin::modal_rig& rig) {
   auto rest = plan.burden;
   rest.string.ends = {};
-  if (!rest.none()) return rosin::failure{"position_profile: a bow that travels can be simulated on ends that move, on nothing else that a model adds"};
+  if (!rest.none())
+    return rosin::failure{
+        "position_profile: a bow that travels can be simulated on ends that move, on nothing else that a model adds"};
   const auto& s = plan.settings;
-  const rosin::wave_settings settings{.sample_rate_Hz = s.sample_rate_Hz, .oversampling = s.oversampling, .pass_Hz = s.pass_Hz, .stop_Hz = s.stop_Hz, .ripple = s.ripple};
+  const rosin::wave_settings settings{.sample_rate_Hz = s.sample_rate_Hz,
+                                      .oversampling = s.oversampling,
+                                      .pass_Hz = s.pass_Hz,
+                                      .stop_Hz = s.stop_Hz,
+                                      .ripple = s.ripple};
   return std::visit(
-      [&](const auto& law) { return rosin::simulate_wave_stroke(rig, law, take.rod, {.position = take.position, .duration_s = plan.duration_s}, settings, plan.burden.string.ends); },
+      [&](const auto& law) {
+        return rosin::simulate_wave_stroke(rig, law, take.rod, {.position = take.position, .duration_s = plan.duration_s},
+                                           settings, plan.burden.string.ends);
+      },
       plan.friction.law);
 }
 
 rosin::outcome<rosin::modal_take> happen(const simulation_plan& plan, const true_take& take) {
   const bool plain = plan.burden.none();
   if (take.declared.kind == take_kind::pluck)
-    return plain ? rosin::simulate_pluck(plan.rig, take.pluck, plan.settings) : rosin::simulate_pluck(plan.rig, plan.burden, take.pluck, plan.settings);
+    return plain ? rosin::simulate_pluck(plan.rig, take.pluck, plan.settings)
+                 : rosin::simulate_pluck(plan.rig, plan.burden, take.pluck, plan.settings);
   if (take.declared.kind == take_kind::bow) {
     const rosin::modal_stroke stroke{.position = take.position, .duration_s = plan.duration_s, .account = true};
     const auto rig = stretched(plan.rig, plan.tension_drift);
@@ -50,33 +62,44 @@ rosin::outcome<rosin::modal_take> happen(const simulation_plan& plan, const true
 samples displacement(const simulation_plan& plan, const true_take& take, const samples& velocity_m_s) {
   samples out(velocity_m_s.size());
   const auto& clamping = plan.burden.string.clamping;  // a string that is held at its ends is a shorter one
-  const double reach = std::sqrt(plan.rig.string.bending_stiffness_Nm2 / plan.rig.string.tension_N) / plan.rig.string.length_m, whole = 1 - (clamping[0] + clamping[1]) * reach;
+  const double reach = std::sqrt(plan.rig.string.bending_stiffness_Nm2 / plan.rig.string.tension_N) / plan.rig.string.length_m,
+               whole = 1 - (clamping[0] + clamping[1]) * reach;
   auto held = plan.rig.string;
   held.length_m *= whole;
-  const double start = take.declared.kind == take_kind::pluck
-                           ? take.pluck.force_N * rosin::static_compliance_m_N(held, (take.position - clamping[0] * reach) / whole) : 0.0;
+  const double start =
+      take.declared.kind == take_kind::pluck
+          ? take.pluck.force_N * rosin::static_compliance_m_N(held, (take.position - clamping[0] * reach) / whole)
+          : 0.0;
   for (std::size_t n = 0; n < out.size(); ++n)
     out[n] = n == 0 ? start : out[n - 1] + (velocity_m_s[n - 1] + velocity_m_s[n]) / 2 / plan.settings.sample_rate_Hz;
   return out;
 }
 
 /// What a channel is meant to measure, in the SI unit of its quantity.
-samples measured(const simulation_plan& plan, const true_take& take, const rosin::modal_take& truth, const rosin::sensor_channel& c) {
+samples measured(const simulation_plan& plan, const true_take& take, const rosin::modal_take& truth,
+                 const rosin::sensor_channel& c) {
   const bool bowed = take.declared.kind == take_kind::bow;
   switch (c.quantity) {
-    case quantity::termination_force: return c.name == "near" ? truth.force_near_N : truth.force_far_N;
-    case quantity::string_velocity: return truth.centre_velocity_m_s;
-    case quantity::string_displacement: return displacement(plan, take, truth.centre_velocity_m_s);
-    case quantity::bow_speed: if (bowed) return truth.rod_velocity_m_s; break;
+    case quantity::termination_force:
+      return c.name == "near" ? truth.force_near_N : truth.force_far_N;
+    case quantity::string_velocity:
+      return truth.centre_velocity_m_s;
+    case quantity::string_displacement:
+      return displacement(plan, take, truth.centre_velocity_m_s);
+    case quantity::bow_speed:
+      if (bowed) return truth.rod_velocity_m_s;
+      break;
     case quantity::normal_force:
       if (bowed) {
         samples out(truth.size());
-        for (std::size_t n = 0; n < out.size(); ++n) out[n] = take.rod(static_cast<double>(n) / truth.sample_rate_Hz).normal_force_N;
+        for (std::size_t n = 0; n < out.size(); ++n)
+          out[n] = take.rod(static_cast<double>(n) / truth.sample_rate_Hz).normal_force_N;
         return out;
       }
       break;
     case quantity::sound:
-    case quantity::unused: break;
+    case quantity::unused:
+      break;
   }
   return samples(truth.size(), 0.0);
 }
@@ -95,7 +118,8 @@ void fill_range(simulation_plan& plan, const std::vector<simulated_take>& takes)
 }
 
 /// One channel into the recording; a channel that the rig file does not name holds noise.
-void record_channel(const simulation_plan& plan, std::size_t i, std::size_t index, const true_channel* channel, simulated_take& out) {
+void record_channel(const simulation_plan& plan, std::size_t i, std::size_t index, const true_channel* channel,
+                    simulated_take& out) {
   const auto& take = plan.takes[i];
   const double full = channel != nullptr ? channel->declared.per_full_scale.value_or(1) : 1;
   const double share = channel != nullptr ? channel->noise_share : plan.channels.front().noise_share;
@@ -121,7 +145,8 @@ void record_channel(const simulation_plan& plan, std::size_t i, std::size_t inde
 
 void record(const simulation_plan& plan, std::size_t i, simulated_take& out) {
   const auto last = static_cast<std::size_t>(plan.channels.back().declared.index);
-  out.recording = {plan.takes[i].declared.file, plan.settings.sample_rate_Hz, {}, plan.bits == 0 ? 32 : plan.bits, plan.bits == 0};
+  out.recording = {
+      plan.takes[i].declared.file, plan.settings.sample_rate_Hz, {}, plan.bits == 0 ? 32 : plan.bits, plan.bits == 0};
   out.recording.channels.resize(last + 1);
   auto next = plan.channels.begin();
   for (std::size_t index = 0; index <= last; ++index) {

@@ -19,7 +19,8 @@ json string_json(const simulation_plan& plan) {
 
 json torsion_json(const simulation_plan& plan) {
   const auto& t = plan.rig.torsion;
-  return t.present() ? json{{"speed_ratio", t.speed_ratio}, {"impedance_ratio", t.impedance_ratio}, {"q", t.quality}} : json(nullptr);
+  return t.present() ? json{{"speed_ratio", t.speed_ratio}, {"impedance_ratio", t.impedance_ratio}, {"q", t.quality}}
+                     : json(nullptr);
 }
 
 json channels_json(const simulation_plan& plan) {
@@ -39,8 +40,11 @@ json ends_json(const simulation_plan& plan) {
   json out = json::object();
   for (std::size_t e = 0; e < 2; ++e) {
     json modes = json::array();
-    const auto add = [&](double frequency_Hz, double q, double mass_kg) { modes.push_back({{"frequency_Hz", frequency_Hz}, {"q", q}, {"mass_kg", mass_kg}}); };
-    for (const auto& m : plan.burden.string.ends[e].modes) add(m.frequency_Hz, m.q, plan.rig.string.impedance_Ns_m() / m.per_mass_per_s);
+    const auto add = [&](double frequency_Hz, double q, double mass_kg) {
+      modes.push_back({{"frequency_Hz", frequency_Hz}, {"q", q}, {"mass_kg", mass_kg}});
+    };
+    for (const auto& m : plan.burden.string.ends[e].modes)
+      add(m.frequency_Hz, m.q, plan.rig.string.impedance_Ns_m() / m.per_mass_per_s);
     if (const auto& s = plan.burden.string.supports[e]; s.mass_kg > 0) add(s.frequency_Hz, s.quality, s.mass_kg);
     out[e == 0 ? "near" : "far"] = modes;
     if (const double c = plan.burden.string.clamping[e]; c > 0) out[e == 0 ? "near_clamping" : "far_clamping"] = c;
@@ -56,16 +60,24 @@ json profile_json(const rosin::profile& points) {
 
 json energy_json(const std::optional<rosin::stroke_energy>& e) {
   if (!e) return nullptr;
-  const auto motion = [](const rosin::motion_energy& m) { return json{{"received_J", m.received_J}, {"stored_J", m.stored_J}, {"lost_J", m.lost_J}}; };
-  return {{"rod_J", e->rod_J},           {"friction_J", e->friction_J},     {"transverse", motion(e->transverse)}, {"torsion", motion(e->torsion)},
-          {"left_out_J", e->left_out_J}, {"string_error", e->string_error()}, {"error", e->error()}};
+  const auto motion = [](const rosin::motion_energy& m) {
+    return json{{"received_J", m.received_J}, {"stored_J", m.stored_J}, {"lost_J", m.lost_J}};
+  };
+  return {{"rod_J", e->rod_J},
+          {"friction_J", e->friction_J},
+          {"transverse", motion(e->transverse)},
+          {"torsion", motion(e->torsion)},
+          {"left_out_J", e->left_out_J},
+          {"string_error", e->string_error()},
+          {"error", e->error()}};
 }
 
 json bow_json(const true_take& take, const simulated_take& simulated) {
   const auto& rod = take.rod;
   json out{{"position", take.position}};
   if (!rod.place.empty()) out["position_profile"] = profile_json(rod.place);
-  if (rod.speed_m_s.empty()) out.update({{"speed_m_s", rod.steady.speed_m_s}, {"start_s", rod.steady.start_s}, {"rise_s", rod.steady.rise_s}});
+  if (rod.speed_m_s.empty())
+    out.update({{"speed_m_s", rod.steady.speed_m_s}, {"start_s", rod.steady.start_s}, {"rise_s", rod.steady.rise_s}});
   else out["speed_profile_m_s"] = profile_json(rod.speed_m_s);
   if (rod.normal_force_N.empty()) out["normal_force_N"] = rod.steady.normal_force_N;
   else out["normal_force_profile_N"] = profile_json(rod.normal_force_N);
@@ -122,10 +134,12 @@ json truth_document(const simulation_plan& plan, const std::vector<simulated_tak
   out["sample_rate_Hz"] = plan.settings.sample_rate_Hz;
   out["bits"] = plan.bits;
   out["low_pass"] = {{"pass_Hz", filter.pass_Hz()}, {"stop_Hz", filter.stop_Hz()}};
-  out["simulation"] = {{"method", plan.burden.none() ? "modes of the pinned stiff string, stepped exactly"
-                                                              : "modes of the stiff string, stepped exactly; what it carries and ends on is solved for in every step"},
-                       {"oversampling", plan.settings.oversampling},
-                       {"mode_limit_Hz", plan.settings.mode_limit_Hz}};
+  out["simulation"] = {
+      {"method", plan.burden.none()
+                     ? "modes of the pinned stiff string, stepped exactly"
+                     : "modes of the stiff string, stepped exactly; what it carries and ends on is solved for in every step"},
+      {"oversampling", plan.settings.oversampling},
+      {"mode_limit_Hz", plan.settings.mode_limit_Hz}};
   out["takes"] = json::array();
   for (std::size_t i = 0; i < takes.size(); ++i) out["takes"].push_back(take_json(plan.takes[i], takes[i], tables[i]));
   out["notes"] = plan.notes;

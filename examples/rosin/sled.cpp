@@ -85,10 +85,19 @@ void sled::stop() {
 }
 
 void add_sled_options(CLI::App& command, sled_options& given) {
-  command.add_option("--sled", given.device, "Serial device of a sled that understands GRBL's G-code; it makes a stroke of --speed during the take")->type_name("DEVICE");
+  command
+      .add_option("--sled", given.device,
+                  "Serial device of a sled that understands GRBL's G-code; it makes a stroke of --speed during the take")
+      ->type_name("DEVICE");
   command.add_option("--distance", given.distance_m, "Of the stroke, with its sign")->type_name("M");
-  command.add_option("--acceleration", given.acceleration_m_s2, "Of the stroke")->type_name("M/S2")->check(CLI::PositiveNumber)->capture_default_str();
-  command.add_option("--rest", given.rest_s, "The take goes on for so long after the stroke")->type_name("S")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command.add_option("--acceleration", given.acceleration_m_s2, "Of the stroke")
+      ->type_name("M/S2")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--rest", given.rest_s, "The take goes on for so long after the stroke")
+      ->type_name("S")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command.add_option("--sled-baud", given.baud, "Speed of its serial line")->capture_default_str();
   command.add_flag("--home", given.home, "Look for the home switch first");
   command.add_flag("--unlock", given.unlock, "End an alarm first: you have looked, and the way is free");

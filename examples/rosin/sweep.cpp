@@ -60,21 +60,26 @@ public:
 
   [[nodiscard]] sweep_result operator()(double position, double force_N, double acceleration_m_s2) {
     if (position != position_) {
-      design_ = std::make_unique<rosin::outcome<rosin::wave_design>>(rosin::design_wave(setup_.rig, position, setup_.settings, setup_.ends));
+      design_ = std::make_unique<rosin::outcome<rosin::wave_design>>(
+          rosin::design_wave(setup_.rig, position, setup_.settings, setup_.ends));
       position_ = position;
     }
     const auto law = law_at(setup_.friction, force_N);
     if (!*design_ || !law) return impossible();
     const rosin::profiled_rod rod{{}, {{0, 0}, {setup_.speed_m_s / acceleration_m_s2, setup_.speed_m_s}}, {{0, force_N}}};
     const auto take = std::visit(
-        [&](const auto& l) { return rosin::simulate_wave_stroke(**design_, setup_.rig, l, rod, setup_.duration_s, setup_.settings); }, *law);
+        [&](const auto& l) {
+          return rosin::simulate_wave_stroke(**design_, setup_.rig, l, rod, setup_.duration_s, setup_.settings);
+        },
+        *law);
     return take ? name(*take) : impossible();
   }
 
 private:
   [[nodiscard]] sweep_result name(const rosin::modal_take& take) const {
     std::vector<double> slip(take.size());
-    for (std::size_t n = 0; n < slip.size(); ++n) slip[n] = take.centre_velocity_m_s[n] + take.torsion_velocity_m_s[n] - take.rod_velocity_m_s[n];
+    for (std::size_t n = 0; n < slip.size(); ++n)
+      slip[n] = take.centre_velocity_m_s[n] + take.torsion_velocity_m_s[n] - take.rod_velocity_m_s[n];
     const auto found = rosin::classify(slip, take.rod_velocity_m_s, take.sample_rate_Hz, setup_.rig.string.fundamental_Hz);
     return {std::string{name_of(found.regime)}, found.transient_periods, found.slips_per_period, take.unconverged};
   }
@@ -105,7 +110,8 @@ std::optional<rosin::failure> read_shard(const std::string& text, sweep_setup& s
 }
 
 /// The string and its bow from the rig file; `--` options win over the first bowed take.
-std::optional<rosin::failure> read_setup(const rosin::rig& rig, const sweep_options& given, sweep_setup& setup, std::vector<std::string>& notes) {
+std::optional<rosin::failure> read_setup(const rosin::rig& rig, const sweep_options& given, sweep_setup& setup,
+                                         std::vector<std::string>& notes) {
   const auto string = nominal_string(rig, notes);
   if (!string) return rosin::failure{string.error()};
   setup.rig.string = *string;
@@ -140,9 +146,10 @@ std::optional<rosin::failure> read_setup(const rosin::rig& rig, const sweep_opti
 std::string conditions(const sweep_options& given, const sweep_setup& setup) {
   std::ostringstream out;
   const auto& s = setup.rig.string;
-  out << "plane " << given.plane << ", position " << (given.plane == "guettler" ? std::to_string(setup.position) : "x") << ", speed " << setup.speed_m_s << " m/s, "
-      << given.periods << " periods at " << given.rate_Hz << " Hz, string " << s.fundamental_Hz << " Hz " << s.tension_N << " N " << s.bending_stiffness_Nm2
-      << " N m2, torsion " << setup.rig.torsion.speed_ratio << " " << setup.rig.torsion.impedance_ratio << " " << setup.rig.torsion.quality
+  out << "plane " << given.plane << ", position " << (given.plane == "guettler" ? std::to_string(setup.position) : "x")
+      << ", speed " << setup.speed_m_s << " m/s, " << given.periods << " periods at " << given.rate_Hz << " Hz, string "
+      << s.fundamental_Hz << " Hz " << s.tension_N << " N " << s.bending_stiffness_Nm2 << " N m2, torsion "
+      << setup.rig.torsion.speed_ratio << " " << setup.rig.torsion.impedance_ratio << " " << setup.rig.torsion.quality
       << ", friction " << setup.friction.to_json().dump();
   return out.str();
 }
@@ -187,10 +194,18 @@ void print_summary(const sweep_options& given, const sweep_plane& plane, const s
   std::map<std::string, std::size_t> counts;
   std::size_t unconverged = 0;
   for (const auto& [index, point] : plane.points) ++counts[point.regime], unconverged += point.unconverged;
-  if (given.json) return print({{"schema", 1}, {"out", given.out}, {"points", plane.points.size()}, {"of", plane.size()}, {"regimes", counts}, {"unconverged", unconverged}, {"notes", notes}});
+  if (given.json)
+    return print({{"schema", 1},
+                  {"out", given.out},
+                  {"points", plane.points.size()},
+                  {"of", plane.size()},
+                  {"regimes", counts},
+                  {"unconverged", unconverged},
+                  {"notes", notes}});
   std::cout << given.out << ": " << plane.points.size() << " of " << plane.size() << " points\n";
   for (const auto& [regime, count] : counts) std::cout << "  " << regime << ": " << count << '\n';
-  if (unconverged > 0) std::cout << "warning: the contact's equation was not solved to tolerance in " << unconverged << " steps\n";
+  if (unconverged > 0)
+    std::cout << "warning: the contact's equation was not solved to tolerance in " << unconverged << " steps\n";
   for (const auto& line : notes) std::cout << "note: " << line << '\n';
 }
 
@@ -207,7 +222,8 @@ exit_code finish(const sweep_options& given, const sweep_plane& plane, const std
 
 exit_code run_merge(const sweep_options& given) {
   std::error_code ignored;
-  if (std::filesystem::exists(given.out, ignored) && !given.force_overwrite) return fail(given.out + ": exists already; --force overwrites it", given.json);
+  if (std::filesystem::exists(given.out, ignored) && !given.force_overwrite)
+    return fail(given.out + ": exists already; --force overwrites it", given.json);
   const auto plane = merge_planes(given.merge);
   if (!plane) return fail(plane.error(), given.json);
   if (const auto why = write_text(given.out, plane_text(*plane))) return fail(why->message, given.json);
@@ -249,16 +265,20 @@ void add_sweep(CLI::App& app, exit_code& result) {
   CLI::App* command = app.add_subcommand("sweep", "Bow the string of a rig at every point of a plane, and name what it does");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds it; recordings are not needed");
   command->add_option("--plane", given->plane, "schelleng (force against position) or guettler (force against acceleration)")
-      ->check(CLI::IsMember({"schelleng", "guettler"}))->capture_default_str();
-  command->add_option("--position", given->position, "FIRST:LAST:COUNT, in steps of one ratio; one number in a plane after Guettler");
+      ->check(CLI::IsMember({"schelleng", "guettler"}))
+      ->capture_default_str();
+  command->add_option("--position", given->position,
+                      "FIRST:LAST:COUNT, in steps of one ratio; one number in a plane after Guettler");
   command->add_option("--force-range", given->force, "Normal force in N, FIRST:LAST:COUNT");
   command->add_option("--acceleration", given->acceleration, "In m/s2, FIRST:LAST:COUNT");
-  command->add_option("--speed", given->speed_m_s, "Final speed of the rod in m/s; else that of the first bowed take")->check(CLI::PositiveNumber);
+  command->add_option("--speed", given->speed_m_s, "Final speed of the rod in m/s; else that of the first bowed take")
+      ->check(CLI::PositiveNumber);
   command->add_option("--periods", given->periods, "Length of each stroke in periods of the string")->capture_default_str();
   command->add_option("--rate", given->rate_Hz, "Steps of the contact per second")->capture_default_str();
   command->add_option("--threads", given->threads, "0: all cores")->capture_default_str();
   command->add_option("--shard", given->shard, "K/N: only every N-th point, from the K-th on")->capture_default_str();
-  command->add_option("--merge", given->merge, "Files of one plane to be joined into --out; nothing is simulated")->type_name("FILE");
+  command->add_option("--merge", given->merge, "Files of one plane to be joined into --out; nothing is simulated")
+      ->type_name("FILE");
   command->add_option("--out", given->out, "CSV file, gone on with if it is there")->required()->type_name("FILE");
   command->add_option("--svg", given->svg, "Draw the plane")->type_name("FILE");
   add_force_option(*command, given->force_overwrite);

@@ -32,7 +32,9 @@ std::string number(double x) {
   return out.str();
 }
 
-std::string axis_text(const sweep_axis& a) { return a.name + " " + number(a.first) + ":" + number(a.last) + ":" + std::to_string(a.count); }
+std::string axis_text(const sweep_axis& a) {
+  return a.name + " " + number(a.first) + ":" + number(a.last) + ":" + std::to_string(a.count);
+}
 
 rosin::outcome<sweep_axis> axis_from_line(const std::string& text) {
   const auto space = text.find(' ');
@@ -44,7 +46,8 @@ bool read_point(const std::string& line, std::size_t& index, sweep_result& to) {
   const auto fields = split(line, ',');
   if (fields.size() != 7 || !read_number(fields[0], index)) return false;
   to.regime = fields[3];
-  return read_number(fields[4], to.transient_periods) && read_number(fields[5], to.slips_per_period) && read_number(fields[6], to.unconverged);
+  return read_number(fields[4], to.transient_periods) && read_number(fields[5], to.slips_per_period) &&
+         read_number(fields[6], to.unconverged);
 }
 
 struct look {
@@ -62,8 +65,12 @@ void draw_ticks(std::ostream& out, const sweep_axis& axis, bool across, double l
     const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(axis.count);
     std::ostringstream label;
     label << std::setprecision(2) << axis.at(i);
-    if (across) out << "<text x='" << left + share * width << "' y='" << top + height + 18 << "' text-anchor='middle'>" << label.str() << "</text>\n";
-    else out << "<text x='" << left - 6 << "' y='" << top + (1 - share) * height + 4 << "' text-anchor='end'>" << label.str() << "</text>\n";
+    if (across)
+      out << "<text x='" << left + share * width << "' y='" << top + height + 18 << "' text-anchor='middle'>" << label.str()
+          << "</text>\n";
+    else
+      out << "<text x='" << left - 6 << "' y='" << top + (1 - share) * height + 4 << "' text-anchor='end'>" << label.str()
+          << "</text>\n";
   }
 }
 
@@ -76,7 +83,8 @@ double sweep_axis::at(std::size_t i) const noexcept {
 rosin::outcome<sweep_axis> parse_axis(const std::string& name, const std::string& text) {
   sweep_axis out{name, 0, 0, 0};
   const auto parts = split(text, ':');
-  const bool read = parts.size() == 3 && read_number(parts[0], out.first) && read_number(parts[1], out.last) && read_number(parts[2], out.count);
+  const bool read = parts.size() == 3 && read_number(parts[0], out.first) && read_number(parts[1], out.last) &&
+                    read_number(parts[2], out.count);
   if (!read) return rosin::failure{name + ": \"" + text + "\" is not FIRST:LAST:COUNT, e.g. 0.02:0.2:12"};
   if (!(out.first > 0 && out.last > 0 && std::isfinite(out.first) && std::isfinite(out.last)))
     return rosin::failure{name + ": both ends must be above 0"};
@@ -85,13 +93,13 @@ rosin::outcome<sweep_axis> parse_axis(const std::string& name, const std::string
 }
 
 std::string sweep_plane::header() const {
-  return "# rosin sweep, schema 1\n# x: " + axis_text(x) + "\n# y: " + axis_text(y) + "\n# " + conditions + "\nindex," + x.name + "," + y.name +
-         ",regime,transient_periods,slips_per_period,unconverged\n";
+  return "# rosin sweep, schema 1\n# x: " + axis_text(x) + "\n# y: " + axis_text(y) + "\n# " + conditions + "\nindex," + x.name +
+         "," + y.name + ",regime,transient_periods,slips_per_period,unconverged\n";
 }
 
 std::string sweep_plane::line(std::size_t index, const sweep_result& r) const {
-  return std::to_string(index) + "," + number(x.at(index % x.count)) + "," + number(y.at(index / x.count)) + "," + r.regime + "," +
-         number(r.transient_periods) + "," + number(r.slips_per_period) + "," + std::to_string(r.unconverged) + "\n";
+  return std::to_string(index) + "," + number(x.at(index % x.count)) + "," + number(y.at(index / x.count)) + "," + r.regime +
+         "," + number(r.transient_periods) + "," + number(r.slips_per_period) + "," + std::to_string(r.unconverged) + "\n";
 }
 
 rosin::outcome<sweep_plane> read_plane(const std::string& file) {
@@ -102,7 +110,8 @@ rosin::outcome<sweep_plane> read_plane(const std::string& file) {
   text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);  // a line cut short is no line
   const auto lines = split(text, '\n');
   sweep_plane plane;
-  if (lines.size() < 5 || lines[0] != "# rosin sweep, schema 1" || lines[1].rfind("# x: ", 0) != 0 || lines[2].rfind("# y: ", 0) != 0)
+  if (lines.size() < 5 || lines[0] != "# rosin sweep, schema 1" || lines[1].rfind("# x: ", 0) != 0 ||
+      lines[2].rfind("# y: ", 0) != 0)
     return rosin::failure{file + ": is no file of rosin sweep"};
   const auto x = axis_from_line(lines[1].substr(5)), y = axis_from_line(lines[2].substr(5));
   if (!x || !y) return rosin::failure{file + ": " + (x ? y.error() : x.error())};
@@ -110,7 +119,8 @@ rosin::outcome<sweep_plane> read_plane(const std::string& file) {
   for (std::size_t n = 5; n < lines.size(); ++n) {
     std::size_t index = 0;
     sweep_result point;
-    if (!read_point(lines[n], index, point) || index >= plane.size()) return rosin::failure{file + ":" + std::to_string(n + 1) + ": is no point of the plane"};
+    if (!read_point(lines[n], index, point) || index >= plane.size())
+      return rosin::failure{file + ":" + std::to_string(n + 1) + ": is no point of the plane"};
     plane.points[index] = point;
   }
   return plane;
@@ -140,26 +150,31 @@ std::string plane_svg(const sweep_plane& plane) {
   double longest = 1;
   for (const auto& [index, p] : plane.points) longest = std::max(longest, p.transient_periods);
   std::ostringstream out;
-  out << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 860 480' font-family='sans-serif' font-size='13'>\n<rect width='860' height='480' fill='#fff'/>\n";
+  out << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 860 480' font-family='sans-serif' font-size='13'>\n<rect "
+         "width='860' height='480' fill='#fff'/>\n";
   for (const auto& [index, point] : plane.points) {
     const sweep_result& p = point;
     const auto* found = std::find_if(looks.begin(), looks.end(), [&p](const look& l) { return p.regime == l.regime; });
     const double depth = p.regime == "helmholtz" ? 1 - 0.7 * p.transient_periods / longest : 0.85;
     out << "<rect x='" << left + cell_x * static_cast<double>(index % plane.x.count) << "' y='"
-        << top + height - cell_y * static_cast<double>(index / plane.x.count + 1) << "' width='" << cell_x << "' height='" << cell_y << "' fill='"
-        << (found != looks.end() ? found->colour : "#000") << "' fill-opacity='" << depth << "'/>\n";
+        << top + height - cell_y * static_cast<double>(index / plane.x.count + 1) << "' width='" << cell_x << "' height='"
+        << cell_y << "' fill='" << (found != looks.end() ? found->colour : "#000") << "' fill-opacity='" << depth << "'/>\n";
   }
-  out << "<rect x='" << left << "' y='" << top << "' width='" << width << "' height='" << height << "' fill='none' stroke='#444'/>\n";
+  out << "<rect x='" << left << "' y='" << top << "' width='" << width << "' height='" << height
+      << "' fill='none' stroke='#444'/>\n";
   draw_ticks(out, plane.x, true, left, top, width, height);
   draw_ticks(out, plane.y, false, left, top, width, height);
-  out << "<text x='" << left + width / 2 << "' y='" << top + height + 44 << "' text-anchor='middle'>" << plane.x.name << "</text>\n<text transform='translate(22 "
-      << top + height / 2 << ") rotate(-90)' text-anchor='middle'>" << plane.y.name << "</text>\n";
+  out << "<text x='" << left + width / 2 << "' y='" << top + height + 44 << "' text-anchor='middle'>" << plane.x.name
+      << "</text>\n<text transform='translate(22 " << top + height / 2 << ") rotate(-90)' text-anchor='middle'>" << plane.y.name
+      << "</text>\n";
   double row = top + 10;
   for (const auto& l : looks) {
-    out << "<rect x='634' y='" << row << "' width='14' height='14' stroke='#888' fill='" << l.colour << "'/><text x='656' y='" << row + 12 << "'>" << l.says << "</text>\n";
+    out << "<rect x='634' y='" << row << "' width='14' height='14' stroke='#888' fill='" << l.colour << "'/><text x='656' y='"
+        << row + 12 << "'>" << l.says << "</text>\n";
     row += 24;
   }
-  out << "<text x='634' y='" << row + 16 << "'>paler blue: longer transient,</text><text x='634' y='" << row + 34 << "'>up to " << longest << " periods</text>\n</svg>\n";
+  out << "<text x='634' y='" << row + 16 << "'>paler blue: longer transient,</text><text x='634' y='" << row + 34 << "'>up to "
+      << longest << " periods</text>\n</svg>\n";
   return out.str();
 }
 

@@ -64,12 +64,21 @@ std::string block(const take_plan& t, const std::vector<std::string>& remarks) {
 
 void add_take_options(CLI::App& command, take_plan& given) {
   command.add_option("--take", given.name, "Name of the take; KIND-1, KIND-2, ... if left out")->type_name("NAME");
-  command.add_option("--kind", given.kind, "pluck, bow or quiet")->check(CLI::IsMember({"pluck", "bow", "quiet"}))->capture_default_str();
-  command.add_option("--wire", given.force_N, "Of a pluck: nominal breaking force of the wire")->type_name("N")->check(CLI::PositiveNumber);
+  command.add_option("--kind", given.kind, "pluck, bow or quiet")
+      ->check(CLI::IsMember({"pluck", "bow", "quiet"}))
+      ->capture_default_str();
+  command.add_option("--wire", given.force_N, "Of a pluck: nominal breaking force of the wire")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
   command.add_option("--wire-tolerance", given.force_tolerance, "Its relative tolerance")->check(CLI::Range(0.0, 1.0));
-  command.add_option("--position", given.position, "Of bow or pluck, where it is not the rig's [contact]")->check(CLI::Range(0.0, 1.0));
-  command.add_option("--speed", given.speed_m_s, "Of a bow: the sled's speed once it is steady")->type_name("M/S")->check(CLI::PositiveNumber);
-  command.add_option("--normal-force", given.normal_force_N, "Of a bow: force of the rod on the string")->type_name("N")->check(CLI::PositiveNumber);
+  command.add_option("--position", given.position, "Of bow or pluck, where it is not the rig's [contact]")
+      ->check(CLI::Range(0.0, 1.0));
+  command.add_option("--speed", given.speed_m_s, "Of a bow: the sled's speed once it is steady")
+      ->type_name("M/S")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--normal-force", given.normal_force_N, "Of a bow: force of the rod on the string")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
   command.add_flag("--hold-out", given.hold_out, "Never fitted, only predicted");
 }
 
@@ -79,7 +88,8 @@ rosin::outcome<rig_file_writer> rig_file_writer::open(const std::string& folder,
   std::error_code error;
   const bool there = fs::exists(out.path(), error);
   if (there && !like.empty()) return rosin::failure{out.path() + ": exists already; --like is for a new rig"};
-  if (!there && like.empty()) return rosin::failure{out.path() + ": is not there; --like names a rig file that describes string and channels"};
+  if (!there && like.empty())
+    return rosin::failure{out.path() + ": is not there; --like names a rig file that describes string and channels"};
   const std::string from = there ? out.path() : fs::is_directory(like, error) ? like + "/rig.toml" : like;
   auto text = read_text(from);
   if (!text) return rosin::failure{text.error()};
@@ -103,7 +113,9 @@ std::string rig_file_writer::free_name(const std::string& kind) const {
   }
 }
 
-rosin::outcome<rosin::rig> rig_file_writer::with(const take_plan& take) const { return rosin::parse_rig(text_ + block(take, {}), path()); }
+rosin::outcome<rosin::rig> rig_file_writer::with(const take_plan& take) const {
+  return rosin::parse_rig(text_ + block(take, {}), path());
+}
 
 std::optional<rosin::failure> rig_file_writer::put(const take_plan& take, const std::vector<std::string>& remarks) {
   latest_ = text_ + block(take, remarks);

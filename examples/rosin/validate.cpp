@@ -60,7 +60,8 @@ exit_code run(const options& given, provenance from) {
   if (given.json) {
     json out{{"schema", 1}, {"provenance", from.to_json()}, {"format", name_of(image->kind)}, {"valid", violations.empty()}};
     out["violations"] = json::array();
-    for (const auto& v : violations) out["violations"].push_back({{"place", v.place}, {"pointer", v.pointer}, {"reason", v.reason}});
+    for (const auto& v : violations)
+      out["violations"].push_back({{"place", v.place}, {"pointer", v.pointer}, {"reason", v.reason}});
     print(out);
   } else {
     for (const auto& v : violations) std::cout << v.place << ": " << v.pointer << ": " << v.reason << '\n';
@@ -80,8 +81,11 @@ exit_code print_schema(const std::string& name) {
 void add_validate(CLI::App& app, exit_code& result) {
   auto given = std::make_shared<options>();
   CLI::App* command = app.add_subcommand("validate", "Check a file against the JSON Schema of its format");
-  auto* file = command->add_option("FILE", given->file, "A rig (.toml), a reconstruction (.csv), a diagnosis or a calibration (.json)");
-  auto* schema = command->add_option("--print-schema", given->print_schema, "Print a schema instead: rig, reconstruction, diagnosis or calibration")
+  auto* file =
+      command->add_option("FILE", given->file, "A rig (.toml), a reconstruction (.csv), a diagnosis or a calibration (.json)");
+  auto* schema = command
+                     ->add_option("--print-schema", given->print_schema,
+                                  "Print a schema instead: rig, reconstruction, diagnosis or calibration")
                      ->check(CLI::IsMember({"rig", "reconstruction", "diagnosis", "calibration"}));
   file->excludes(schema);
   add_json_option(*command, given->json);

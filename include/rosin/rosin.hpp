@@ -120,8 +120,8 @@
 #include <rosin/friction/enhanced_thermal.hpp>
 #include <rosin/friction/friction_curves.hpp>
 #include <rosin/friction/friction_law.hpp>
-#include <rosin/friction/slip_phases.hpp>
 #include <rosin/friction/slip_loops.hpp>
+#include <rosin/friction/slip_phases.hpp>
 #include <rosin/friction/slip_samples.hpp>
 #include <rosin/friction/slip_watch.hpp>
 #include <rosin/friction/thermal_plastic.hpp>
@@ -144,6 +144,7 @@
 #include <rosin/simulate/modal_stroke.hpp>
 #include <rosin/simulate/modal_take.hpp>
 #include <rosin/simulate/mode_step.hpp>
+#include <rosin/simulate/moving_load.hpp>
 #include <rosin/simulate/moving_support.hpp>
 #include <rosin/simulate/point_modes.hpp>
 #include <rosin/simulate/port_bank.hpp>

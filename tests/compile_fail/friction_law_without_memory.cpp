@@ -5,7 +5,9 @@
 
 struct dry {
   using scalar = double;
-  rosin::contact_force<double> operator()(const rosin::load_line<double>& line) noexcept { return {line.sticking_force(), 0, false, true}; }
+  rosin::contact_force<double> operator()(const rosin::load_line<double>& line) noexcept {
+    return {line.sticking_force(), 0, false, true};
+  }
 #ifndef ROSIN_MUST_FAIL
   void reset() noexcept {}
 #endif

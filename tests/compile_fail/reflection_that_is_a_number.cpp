@@ -7,6 +7,7 @@ auto motion(const rosin::bow_point& at, std::span<const double> near_N, std::spa
 #ifdef ROSIN_MUST_FAIL
   return rosin::reconstruct_periodic<rosin::full_physics>(at, near_N, far_N, rosin::band{20e3, 30e3}, 128e3, -0.98);
 #else
-  return rosin::reconstruct_periodic<rosin::full_physics>(at, near_N, far_N, rosin::band{20e3, 30e3}, 128e3, [](double) { return -0.98; });
+  return rosin::reconstruct_periodic<rosin::full_physics>(at, near_N, far_N, rosin::band{20e3, 30e3}, 128e3,
+                                                          [](double) { return -0.98; });
 #endif
 }

@@ -5,10 +5,10 @@
 #include <rosin/friction/enhanced_thermal.hpp>
 #include <rosin/friction/friction_curves.hpp>
 #include <rosin/friction/friction_law.hpp>
+#include <rosin/friction/slip_watch.hpp>
 #include <rosin/friction/thermal_plastic.hpp>
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/friction/yield_curve.hpp>
-#include <rosin/friction/slip_watch.hpp>
 
 namespace {
 

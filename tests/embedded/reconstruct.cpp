@@ -11,8 +11,9 @@ extern "C" void rosin_bow_block(const rosin::streaming_coefficients<float, 128>*
   for (int n = 0; n < count; ++n) force_N[n] = stream({near_N[n], far_N[n]}).force_N();
 }
 
-extern "C" bool rosin_bow_passages(const rosin::passage_coefficients<float, 64, 7>* coefficients, const rosin::termination_frame<float>* in,
-                                   rosin::bow_frame<float>* out, std::size_t count) noexcept {
+extern "C" bool rosin_bow_passages(const rosin::passage_coefficients<float, 64, 7>* coefficients,
+                                   const rosin::termination_frame<float>* in, rosin::bow_frame<float>* out,
+                                   std::size_t count) noexcept {
   rosin::passage_reconstructor<float, 64, 256, 7> stream{*coefficients};
   stream.process({in, count}, {out, count});
   out[0] = stream(in[0]);
@@ -22,7 +23,8 @@ extern "C" bool rosin_bow_passages(const rosin::passage_coefficients<float, 64, 
 }
 
 extern "C" bool rosin_bow_passages_in_double(const rosin::passage_coefficients<double, 64, 7>* coefficients,
-                                             const rosin::termination_frame<double>* in, rosin::bow_frame<double>* out, std::size_t count) noexcept {
+                                             const rosin::termination_frame<double>* in, rosin::bow_frame<double>* out,
+                                             std::size_t count) noexcept {
   rosin::passage_reconstructor<double, 64, 256, 7> stream{*coefficients};
   stream.process({in, count}, {out, count});
   out[0] = stream(in[0]);

@@ -31,7 +31,8 @@ std::vector<T> read(const char* name, long skip = 0) {
 
 int record(const char* take, std::array<double, 2> full_scale_N) {
   std::vector<float> newtons;
-  for (const std::int16_t x : read<std::int16_t>(take, 44)) newtons.push_back(static_cast<float>(full_scale_N[newtons.size() % 2] * x / 32768));
+  for (const std::int16_t x : read<std::int16_t>(take, 44))
+    newtons.push_back(static_cast<float>(full_scale_N[newtons.size() % 2] * x / 32768));
   std::FILE* file = std::fopen("forces.f32", "wb");
   const bool written = file != nullptr && std::fwrite(newtons.data(), sizeof(float), newtons.size(), file) == newtons.size();
   return written && std::fclose(file) == 0 && newtons.size() > 10000 ? 0 : 1;
@@ -62,7 +63,8 @@ int compare() {
   double largest[4]{}, square[4]{};
   std::size_t flags_differ = 0, known = 0;
   for (std::size_t i = 0; i < frames; ++i) {
-    const auto f = stream({static_cast<double>(forces[2 * i] - rig::offset.near_N), static_cast<double>(forces[2 * i + 1] - rig::offset.far_N)});
+    const auto f = stream(
+        {static_cast<double>(forces[2 * i] - rig::offset.near_N), static_cast<double>(forces[2 * i + 1] - rig::offset.far_N)});
     const double here[4]{f.force_near_N, f.force_far_N, f.velocity_near_m_s, f.velocity_far_m_s};
     for (std::size_t k = 0; k < 4; ++k) {
       const double there = static_cast<double>(bow[4 * i + k]);
@@ -75,7 +77,8 @@ int compare() {
   }
   double worst = 0;
   for (std::size_t k = 0; k < 4; ++k) worst = std::max(worst, largest[k] / std::sqrt(square[k] / static_cast<double>(known)));
-  std::printf("%zu frames, %zu known; largest difference from the desktop %.2g of the rms, %zu flags differ\n", frames, known, worst, flags_differ);
+  std::printf("%zu frames, %zu known; largest difference from the desktop %.2g of the rms, %zu flags differ\n", frames, known,
+              worst, flags_differ);
   return worst < 1e-5 && flags_differ == 0 && known + 1000 > frames ? 0 : 1;
 }
 

@@ -62,7 +62,8 @@ void check_all(const rosin::recording& from) {
   for (const auto& t : r.takes) {
     const auto signals = rosin::signals_of(r, t, from);
     require(signals.has_value());
-    for (const auto& finding : rosin::check_take(r, t, *signals).findings) require(!finding.what.empty() && !finding.advice.empty());
+    for (const auto& finding : rosin::check_take(r, t, *signals).findings)
+      require(!finding.what.empty() && !finding.advice.empty());
   }
 }
 

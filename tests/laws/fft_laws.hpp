@@ -16,7 +16,8 @@
 namespace laws {
 
 // 17921 is prime; 2 * 127 and 9 * 1009 have a large prime factor; 6 and 10 are even but no multiples of four.
-inline const std::vector<std::size_t> fft_lengths{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 23, 29, 31, 64, 97, 120, 254, 1000, 1021, 4096, 9081, 17921};
+inline const std::vector<std::size_t> fft_lengths{1,  2,  3,  4,  5,   6,   7,    8,    9,    10,   12,   23,
+                                                  29, 31, 64, 97, 120, 254, 1000, 1021, 4096, 9081, 17921};
 
 template <class T>
 std::vector<T> noise(std::size_t n, unsigned seed) {
@@ -50,7 +51,8 @@ std::complex<long double> bin_by_definition(const std::vector<T>& x, std::size_t
   const std::size_t n = x.size();
   std::complex<long double> sum{};
   for (std::size_t j = 0; j < n; ++j) {
-    const long double angle = -2 * 3.14159265358979323846264338328L * static_cast<long double>(j * k % n) / static_cast<long double>(n);
+    const long double angle =
+        -2 * 3.14159265358979323846264338328L * static_cast<long double>(j * k % n) / static_cast<long double>(n);
     sum += std::complex<long double>{std::cos(angle), std::sin(angle)} * widened(x[j]);
   }
   return sum;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The whole way on strings whose truth is known: bowed by the modal simulator, recorded, calibrated from plucks, reconstructed, and
-// compared with the true force and velocity through one and the same low-pass.
+// The whole way on strings whose truth is known: bowed by the modal simulator, recorded, calibrated from plucks, reconstructed,
+// and compared with the true force and velocity through one and the same low-pass.
 #pragma once
 
 #include <rosin/calibrate/calibration.hpp>
@@ -22,7 +22,8 @@ inline constexpr rosin::band narrow{20e3, 30e3};  ///< for the whole chain: flat
 
 /// A signal through the window of a band; NaN where the low-pass reaches beyond the record.
 inline std::vector<double> through(const rosin::band& limits, const std::vector<double>& x) {
-  rosin::block_convolver<double> low_pass(1, std::vector<rosin::fir>{rosin::shortest_fir([](double) { return 1.0; }, limits, rate_Hz, -400, 400, 1e-7)});
+  rosin::block_convolver<double> low_pass(
+      1, std::vector<rosin::fir>{rosin::shortest_fir([](double) { return 1.0; }, limits, rate_Hz, -400, 400, 1e-7)});
   std::vector<double> y(x.size());
   const std::array<std::span<const double>, 1> in{x};
   const std::array<std::span<double>, 1> out{std::span<double>(y)};
@@ -54,11 +55,13 @@ inline verdict compare(const rosin::bow_motion<double>& motion, const rosin::mod
     force[i] = force_scale * motion.force_N(i);
     velocity[i] = velocity_scale * motion.velocity_m_s(i);
   }
-  const std::vector<double> true_force = through(limits, truth.contact_force_N), true_velocity = through(limits, truth.centre_velocity_m_s);
+  const std::vector<double> true_force = through(limits, truth.contact_force_N),
+                            true_velocity = through(limits, truth.centre_velocity_m_s);
   const auto over = [&](double begin_s, double end_s) {
     const auto cut = [&](const std::vector<double>& x) { return part(x, begin_s, end_s); };
     return deltas{rosin::consistency_delta(cut(motion.force_near_N), cut(motion.force_far_N)),
-                  rosin::consistency_delta(cut(force), cut(true_force)), rosin::consistency_delta(cut(velocity), cut(true_velocity))};
+                  rosin::consistency_delta(cut(force), cut(true_force)),
+                  rosin::consistency_delta(cut(velocity), cut(true_velocity))};
   };
   const double end_s = static_cast<double>(truth.size()) / rate_Hz;
   return {over(0, end_s), over(0, 0.06), over(end_s - 0.2, end_s)};
@@ -79,7 +82,11 @@ inline double best_scale(const std::vector<double>& made, const std::vector<doub
 
 /// The string of the paper's verification, its rod and its friction.
 inline rosin::modal_rig paper_rig() {
-  return {{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}},
+  return {{.length_m = 0.314,
+           .tension_N = 72.5,
+           .fundamental_Hz = 659.69,
+           .bending_stiffness_Nm2 = 4.7e-5,
+           .loss = {.quality = 1000}},
           {.speed_ratio = 7, .impedance_ratio = 3.5, .quality = 15}};
 }
 inline constexpr double paper_position = 0.3;
@@ -89,14 +96,16 @@ inline constexpr rosin::steady_rod paper_rod{.speed_m_s = 0.2, .normal_force_N =
 inline auto paper_law(bool thermal) {
   decltype(rosin::random_rig::law) law = rosin::velocity_curve<rosin::two_exponential_curve<double>>{{}};
   const rosin::contact_heat_parameters<double> heat{};
-  const auto strength = rosin::design_yield_curve(rosin::two_exponential_curve<double>{}, heat.without_string(), paper_rod.normal_force_N);
+  const auto strength =
+      rosin::design_yield_curve(rosin::two_exponential_curve<double>{}, heat.without_string(), paper_rod.normal_force_N);
   if (thermal && strength) law = rosin::thermal_plastic<double>{*strength, heat};
   return law;
 }
 
 inline rosin::modal_take paper_take(bool thermal) {
   const auto law = paper_law(thermal);
-  auto take = std::visit([&](const auto& l) { return rosin::simulate_stroke(paper_rig(), l, paper_rod, {.position = paper_position}); }, law);
+  auto take = std::visit(
+      [&](const auto& l) { return rosin::simulate_stroke(paper_rig(), l, paper_rod, {.position = paper_position}); }, law);
   return *std::move(take);
 }
 
@@ -134,11 +143,11 @@ struct chain_row {
   std::string take;
   double position = 0;
   bool thermal = false;
-  double force_rms_N = 0;                           ///< of the true force, mean aside
-  verdict made;                                     ///< after the common scale
-  double scale_error = 0, scale_sd = 0;             ///< relative: force made / true, and what is stated
-  double force_inside = 0, velocity_inside = 0;     ///< share of samples within 1.96 stated sd
-  double force_width = 0, velocity_width = 0;       ///< rms of the stated sd / rms of the error
+  double force_rms_N = 0;                        ///< of the true force, mean aside
+  verdict made;                                  ///< after the common scale
+  double scale_error = 0, scale_sd = 0;          ///< relative: force made / true, and what is stated
+  double force_inside = 0, velocity_inside = 0;  ///< share of samples within 1.96 stated sd
+  double force_width = 0, velocity_width = 0;    ///< rms of the stated sd / rms of the error
   double tuning_sigmas = 0;
 };
 
@@ -152,16 +161,22 @@ inline rosin::outcome<rosin::calibration> calibrate(const rosin::random_rig& r, 
   std::vector<rosin::pluck_take> plucks;
   for (std::size_t i = 0; i < r.plucks.size(); ++i) {
     const auto& take = recordings.takes[i];
-    plucks.push_back({take.name, rate_Hz, {take.channels[0].newtons(), take.channels[1].newtons()}, r.declared.pluck_N[i], 0.03, r.declared.position});
+    plucks.push_back({take.name,
+                      rate_Hz,
+                      {take.channels[0].newtons(), take.channels[1].newtons()},
+                      r.declared.pluck_N[i],
+                      0.03,
+                      r.declared.position});
   }
-  const auto fit = rosin::fit_plucks(plucks, {.fundamental_Hz = r.declared.string.fundamental_Hz, .inharmonicity = r.declared.string.inharmonicity()});
+  const auto fit = rosin::fit_plucks(
+      plucks, {.fundamental_Hz = r.declared.string.fundamental_Hz, .inharmonicity = r.declared.string.inharmonicity()});
   if (!fit) return rosin::failure{fit.error()};
   return rosin::calibration_from(*fit, r.declared.position, r.declared.string.impedance_Ns_m(), 0.01);
 }
 
 /// Share of samples within 1.96 sd, and rms sd / rms error.
-inline std::pair<double, double> judge_sd(const std::vector<double>& made, const std::vector<double>& truth, const std::vector<double>& sd,
-                                          double scale) {
+inline std::pair<double, double> judge_sd(const std::vector<double>& made, const std::vector<double>& truth,
+                                          const std::vector<double>& sd, double scale) {
   double inside = 0, count = 0, error = 0, stated = 0;
   for (std::size_t i = 0; i < made.size(); ++i) {
     if (!std::isfinite(made[i]) || !std::isfinite(truth[i])) continue;

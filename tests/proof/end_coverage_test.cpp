@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Do the error bars cover where the ends of the string move? Random strings on random resonances at one end or both, bowed from rest, simulated by
-// component modes (tests/support/moving_end_rig.hpp), 16 bits, 0.3 mN of noise. Everything that a laboratory has to find out is found: pitch, place,
-// loss and resonances from three plucks, whose wires, gains and notebook are off by what is usual. Errors are set against their stated standard
-// deviations: random ones sample by sample, after the scale that suits best; systematic ones, the scale itself, one a rig.
+// Do the error bars cover where the ends of the string move? Random strings on random resonances at one end or both, bowed from
+// rest, simulated by component modes (tests/support/moving_end_rig.hpp), 16 bits, 0.3 mN of noise. Everything that a laboratory
+// has to find out is found: pitch, place, loss and resonances from three plucks, whose wires, gains and notebook are off by what
+// is usual. Errors are set against their stated standard deviations: random ones sample by sample, after the scale that suits
+// best; systematic ones, the scale itself, one a rig.
 //
 #include <rosin/calibrate/end_fit.hpp>
 #include <rosin/reconstruct/end_sensitivity.hpp>
@@ -37,7 +38,8 @@ struct moving_rig {
   explicit moving_rig(std::uint64_t seed) : drawn{rosin::draw_rig(seed)}, rig{drawn.rig.string, {}}, source{seed + 1000} {
     for (std::size_t e = 0; e < 2; ++e)
       for (int i = 0, count = static_cast<int>(source.uniform(e == 0 ? 1 : 0, e == 0 ? 4 : 2)); i < count; ++i)
-        rig.ends[e].push_back({300 * std::pow(20, source.uniform()), 8 * std::pow(5, source.uniform()), 4e-3 * std::pow(15, source.uniform())});
+        rig.ends[e].push_back(
+            {300 * std::pow(20, source.uniform()), 8 * std::pow(5, source.uniform()), 4e-3 * std::pow(15, source.uniform())});
     place = {drawn.position, 0.6 * drawn.position};
     for (std::size_t i = 0; i < 2; ++i) declared_place[i] = place[i] + 0.002 * source();
     declared_impedance = rig.string.impedance_Ns_m() * (1 + 0.01 * source());
@@ -55,7 +57,8 @@ std::vector<rosin::pluck_take> plucks_of(moving_rig& r) {
     auto take = test::pluck_moving_ends(r.rig, r.place[where], 1 + 0.015 * r.source(), 0.01, 0.35, fine);
     const auto seed = static_cast<unsigned>(100 * r.drawn.seed + 2 * takes.size());
     recorded(take.near_N, r.drawn.gain[0], seed, 2), recorded(take.far_N, r.drawn.gain[1], seed + 1, 2);
-    takes.push_back({"pluck-" + std::to_string(takes.size() + 1), rate_Hz, {take.near_N, take.far_N}, 1, 0.03, r.declared_place[where]});
+    takes.push_back(
+        {"pluck-" + std::to_string(takes.size() + 1), rate_Hz, {take.near_N, take.far_N}, 1, 0.03, r.declared_place[where]});
   }
   return takes;
 }
@@ -65,14 +68,17 @@ struct coverage {
   double random = 0, systematic = 0, per_cent = 0;
 };
 
-coverage judge(const std::vector<double>& made, const std::vector<double>& sd, const std::vector<double>& raw_truth, double scale_sd) {
+coverage judge(const std::vector<double>& made, const std::vector<double>& sd, const std::vector<double>& raw_truth,
+               double scale_sd) {
   const auto truth = test::through_band(raw_truth, limits, rate_Hz);
   double count = 0, m = 0, t = 0, mm = 0, mt = 0, tt = 0;
   const auto each = [&](auto&& see) {
     for (std::size_t i = 0; i < made.size(); ++i)
       if (std::isfinite(made[i]) && std::isfinite(truth[i])) see(i);
   };
-  each([&](std::size_t i) { ++count, m += made[i], t += truth[i], mm += made[i] * made[i], mt += made[i] * truth[i], tt += truth[i] * truth[i]; });
+  each([&](std::size_t i) {
+    ++count, m += made[i], t += truth[i], mm += made[i] * made[i], mt += made[i] * truth[i], tt += truth[i] * truth[i];
+  });
   const double scale = (mt - m * t / count) / (mm - m * m / count);
   double random = 0, error = 0;
   each([&](std::size_t i) {
@@ -88,15 +94,19 @@ struct row {
 
 row run(std::uint64_t seed) {
   moving_rig r(seed);
-  const rosin::pluck_guess guess{.fundamental_Hz = r.drawn.declared.string.fundamental_Hz, .inharmonicity = r.drawn.declared.string.inharmonicity()};
+  const rosin::pluck_guess guess{.fundamental_Hz = r.drawn.declared.string.fundamental_Hz,
+                                 .inharmonicity = r.drawn.declared.string.inharmonicity()};
   const auto found = rosin::fit_ends(plucks_of(r), guess);
   REQUIRE(found);
   const auto plucked = rosin::calibration_from(found->plucks, r.declared_place[0], r.declared_impedance, 0.01);
 
-  const auto stroke = std::visit([&](const auto& law) { return test::bow_moving_ends(r.rig, r.place[0], law, r.drawn.strokes[0], 0.15, fine); }, r.drawn.law);
+  const auto stroke =
+      std::visit([&](const auto& law) { return test::bow_moving_ends(r.rig, r.place[0], law, r.drawn.strokes[0], 0.15, fine); },
+                 r.drawn.law);
   std::array<std::vector<double>, 2> force{stroke.near_N, stroke.far_N};
   for (std::size_t e = 0; e < 2; ++e) recorded(force[e], r.drawn.gain[e], static_cast<unsigned>(100 * seed + 50 + e), 4);
-  const auto near = rosin::motion_of_end(found->ends[0], force[0], limits, rate_Hz), far = rosin::motion_of_end(found->ends[1], force[1], limits, rate_Hz);
+  const auto near = rosin::motion_of_end(found->ends[0], force[0], limits, rate_Hz),
+             far = rosin::motion_of_end(found->ends[1], force[1], limits, rate_Hz);
   const rosin::end_signals<double, physics> heard{force[0], force[1], near.times_impedance_N, far.times_impedance_N};
   const rosin::calibration c = rosin::fine_tune<physics>(plucked, heard, limits, rate_Hz).tuned;
   const auto signals = rosin::detail::calibrated(c, heard);
@@ -112,13 +122,16 @@ row run(std::uint64_t seed) {
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(waveform + of_modes, waveform + of_modes);
   covariance.topLeftCorner(waveform, waveform) = c.covariance;
   covariance.bottomRightCorner(of_modes, of_modes) = found->covariance.bottomRightCorner(of_modes, of_modes);
-  const auto sure = rosin::uncertainty<physics>(c, motion, slopes, {c.noise_N[0] / c.gain[0], c.noise_N[1] / c.gain[1]}, limits, rate_Hz, covariance);
+  const auto sure = rosin::uncertainty<physics>(c, motion, slopes, {c.noise_N[0] / c.gain[0], c.noise_N[1] / c.gain[1]}, limits,
+                                                rate_Hz, covariance);
 
   std::vector<double> made_f, made_v;
   for (std::size_t i = 0; i < force[0].size(); ++i) made_f.push_back(motion.force_N(i)), made_v.push_back(motion.velocity_m_s(i));
-  const row out{judge(made_f, sure.force_sd_N, stroke.force_N, sure.force_scale), judge(made_v, sure.velocity_sd_m_s, stroke.velocity_m_s, sure.velocity_scale)};
-  std::printf("%4u  %zu %zu (%2zu)  %5.2f %6.2f   %5.2f %6.2f   %6.2f %6.2f\n", static_cast<unsigned>(seed), r.rig.ends[0].size(), r.rig.ends[1].size(), modes.size(),
-              out.force.random, out.velocity.random, out.force.systematic, out.velocity.systematic, out.force.per_cent, out.velocity.per_cent);
+  const row out{judge(made_f, sure.force_sd_N, stroke.force_N, sure.force_scale),
+                judge(made_v, sure.velocity_sd_m_s, stroke.velocity_m_s, sure.velocity_scale)};
+  std::printf("%4u  %zu %zu (%2zu)  %5.2f %6.2f   %5.2f %6.2f   %6.2f %6.2f\n", static_cast<unsigned>(seed), r.rig.ends[0].size(),
+              r.rig.ends[1].size(), modes.size(), out.force.random, out.velocity.random, out.force.systematic,
+              out.velocity.systematic, out.force.per_cent, out.velocity.per_cent);
   std::fflush(stdout);
   return out;
 }
@@ -136,7 +149,8 @@ TEST_CASE("error over stated standard deviation: 0.8 to 1.25, random and systema
     force_scale += r.force.systematic * r.force.systematic, velocity_scale += r.velocity.systematic * r.velocity.systematic;
   }
   for (double* sum : {&force, &velocity, &force_scale, &velocity_scale}) *sum = std::sqrt(*sum / rigs);
-  std::printf("all   rms of error / sd: force %.2f, velocity %.2f; their scales %.2f, %.2f\n", force, velocity, force_scale, velocity_scale);
+  std::printf("all   rms of error / sd: force %.2f, velocity %.2f; their scales %.2f, %.2f\n", force, velocity, force_scale,
+              velocity_scale);
   for (const double z : {force, velocity}) {
     CHECK(z > 0.8);
     CHECK(z < 1.25);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Which law of friction do strokes follow? 60 random rigs, 20 a law, three strokes each, as a laboratory would have them: the right law
-// has to win 57 times. Prints who won against whom, by how much, and how far the parameters are off in standard deviations.
+// Which law of friction do strokes follow? 60 random rigs, 20 a law, three strokes each, as a laboratory would have them: the
+// right law has to win 57 times. Prints who won against whom, by how much, and how far the parameters are off in standard
+// deviations.
 #include "law_rigs.hpp"
 
 #include <rosin/diagnose/law_choice.hpp>
@@ -59,11 +60,13 @@ double sigmas_off(const judged_rig& r) {
 void print_rig(std::size_t kind, const judged_rig& r) {
   if (!r.choice) return (void)std::printf("%-14s %2d: %s\n", names[kind], static_cast<int>(r.seed), r.failure.c_str());
   const auto& c = *r.choice;
-  std::printf("%-14s %2d: %-14s by %5.0f nats; gain/held out thermal %5.0f/%5.0f, bristles %5.0f/%5.0f; residual %.4f", names[kind], static_cast<int>(r.seed), names[static_cast<std::size_t>(c.law)],
-              c.margin, c.laws[1].gain, c.laws[1].held_out_gain, c.laws[2].gain, c.laws[2].held_out_gain, c.friction_residual);
+  std::printf("%-14s %2d: %-14s by %5.0f nats; gain/held out thermal %5.0f/%5.0f, bristles %5.0f/%5.0f; residual %.4f",
+              names[kind], static_cast<int>(r.seed), names[static_cast<std::size_t>(c.law)], c.margin, c.laws[1].gain,
+              c.laws[1].held_out_gain, c.laws[2].gain, c.laws[2].held_out_gain, c.friction_residual);
   if (kind == 2 && !c.laws[2].parameters.empty()) {
     const auto& s0 = c.laws[2].parameters.front();
-    std::printf("; presliding %3.0f us, %s %.4g +- %.2g, true %.4g /m, %+.1f sd", 1e6 * r.presliding_s, s0.name.c_str(), s0.value, s0.sd, r.stiffness_1_m, sigmas_off(r));
+    std::printf("; presliding %3.0f us, %s %.4g +- %.2g, true %.4g /m, %+.1f sd", 1e6 * r.presliding_s, s0.name.c_str(), s0.value,
+                s0.sd, r.stiffness_1_m, sigmas_off(r));
   }
   std::printf("\n");
 }
@@ -88,8 +91,10 @@ TEST_CASE("friction laws on 60 random rigs: the right one wins in at least 57") 
       if (kind == 2 && said == 2) off.push_back(std::abs(sigmas_off(r)));
     }
   std::printf("%-16s %14s %14s %14s %8s\n", "true law", names[0], names[1], names[2], "none");
-  for (std::size_t kind = 0; kind < 3; ++kind) std::printf("%-16s %14d %14d %14d %8d\n", names[kind], table[kind][0], table[kind][1], table[kind][2], table[kind][3]);
+  for (std::size_t kind = 0; kind < 3; ++kind)
+    std::printf("%-16s %14d %14d %14d %8d\n", names[kind], table[kind][0], table[kind][1], table[kind][2], table[kind][3]);
   const auto within = std::count_if(off.begin(), off.end(), [](double x) { return x < 2; });
-  std::printf("right: %d of 60; stiffness of the bristles within 2 sd in %d of %d\n", right, static_cast<int>(within), static_cast<int>(off.size()));
+  std::printf("right: %d of 60; stiffness of the bristles within 2 sd in %d of %d\n", right, static_cast<int>(within),
+              static_cast<int>(off.size()));
   CHECK(right >= 57);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The level of the force behind AC-coupled sensors, from the law of friction that the strokes follow: 30 random rigs, three strokes each,
-// sensors with a corner at 2 Hz. Prints errors as friction coefficients and in standard deviations.
+// The level of the force behind AC-coupled sensors, from the law of friction that the strokes follow: 30 random rigs, three
+// strokes each, sensors with a corner at 2 Hz. Prints errors as friction coefficients and in standard deviations.
 #include "law_rigs.hpp"
 
 #include <rosin/diagnose/lost_level.hpp>
@@ -50,8 +50,9 @@ TEST_CASE("levels lost to AC coupling, on 30 random rigs: errors as large as sta
     std::uint64_t seed = 1;
     for (int i = 0; i < 10; ++i) {
       const auto r = judge_level(kind, seed);
-      std::printf("law %d, rig %2d: %s; off by %+.3f +- %.3f (%+.1f sd), strokes apart by %.3f\n", static_cast<int>(kind), static_cast<int>(r.seed), r.heat_told ? "heat knows zero" : "usual friction", r.error, r.sd,
-                  r.error / r.sd, r.apart);
+      std::printf("law %d, rig %2d: %s; off by %+.3f +- %.3f (%+.1f sd), strokes apart by %.3f\n", static_cast<int>(kind),
+                  static_cast<int>(r.seed), r.heat_told ? "heat knows zero" : "usual friction", r.error, r.sd, r.error / r.sd,
+                  r.apart);
       within += std::abs(r.error) < 2 * r.sd ? 1 : 0;
       told += r.heat_told && kind != rosin::contact_law::thermal ? 1 : 0;
     }

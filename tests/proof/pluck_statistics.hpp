@@ -61,7 +61,8 @@ inline Eigen::VectorXd recorded(const pluck_case& c) {
   const auto take = rosin::simulate_pluck(c.rig, c.pluck, c.settings);
   const auto n = static_cast<Eigen::Index>(take->size());
   Eigen::VectorXd both(2 * n);
-  both << c.gain[0] * Eigen::VectorXd::Map(take->force_near_N.data(), n), c.gain[1] * Eigen::VectorXd::Map(take->force_far_N.data(), n);
+  both << c.gain[0] * Eigen::VectorXd::Map(take->force_near_N.data(), n),
+      c.gain[1] * Eigen::VectorXd::Map(take->force_far_N.data(), n);
   return both;
 }
 
@@ -96,8 +97,9 @@ inline judged cramer_rao(const pluck_case& at) {
   const double code = std::ldexp(2.0, 1 - at.bits), variance = at.noise_N * at.noise_N + code * code / 12;
   Eigen::MatrixXd information = J.transpose() * J / variance;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd covariance =
-      scale.asDiagonal() * Eigen::MatrixXd((scale.asDiagonal() * information * scale.asDiagonal()).eval().inverse()) * scale.asDiagonal();
+  const Eigen::MatrixXd covariance = scale.asDiagonal() *
+                                     Eigen::MatrixXd((scale.asDiagonal() * information * scale.asDiagonal()).eval().inverse()) *
+                                     scale.asDiagonal();
   const auto sd = [&](Eigen::Index p) { return std::sqrt(covariance(p, p)); };
   const double ratio = std::sqrt(covariance(5, 5) + covariance(6, 6) - 2 * covariance(5, 6));
   return {sd(0), sd(7), ratio, sd(1), sd(2), sd(8)};
@@ -109,7 +111,8 @@ inline void judge_pluck(const pluck_case& c, std::uint64_t seed, pluck_errors& o
   rosin::pluck_take take{"pluck", c.settings.sample_rate_Hz, {}, 1.0, 0.06, c.pluck.position};
   for (std::size_t channel = 0; channel < 2; ++channel)
     take.force_N[channel] = rosin::convert(channel == 0 ? truth->force_near_N : truth->force_far_N, take.rate_Hz,
-                                           {.gain = c.gain[channel], .noise_N = c.noise_N, .bits = c.bits}, 2 * seed + channel).newtons();
+                                           {.gain = c.gain[channel], .noise_N = c.noise_N, .bits = c.bits}, 2 * seed + channel)
+                                .newtons();
   const rosin::pluck_guess guess{.fundamental_Hz = c.rig.string.fundamental_Hz * (seed % 2 ? 1.004 : 0.996),
                                  .inharmonicity = c.rig.string.inharmonicity()};
   const auto fit = rosin::fit_plucks({take}, guess);
@@ -134,8 +137,8 @@ inline void judge_pluck(const pluck_case& c, std::uint64_t seed, pluck_errors& o
 }
 
 /// `rigs` strings and positions with `each` plucks of different release and noise; the bound is computed once a rig.
-inline pluck_errors judge_plucks(std::uint64_t first_seed, int rigs, int each, rosin::damping_convention damping, double duration_s,
-                                 bool with_bound) {
+inline pluck_errors judge_plucks(std::uint64_t first_seed, int rigs, int each, rosin::damping_convention damping,
+                                 double duration_s, bool with_bound) {
   const auto one_rig = [=](std::uint64_t seed) {
     pluck_errors out;
     pluck_case c = draw_pluck_case(seed, damping, duration_s);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// A string that ends on what was measured, running free: the travelling waves on every type of termination against the modal simulator (the rig of
-// burdened_signals.hpp, which steps the ends as oscillators beside the string). The bridge has twenty modes, as a violin has; the waves are given those,
-// the table that a hammer and a laser would make of them, and the impulse response of a reflection. Waveforms over twenty periods
-// under the bow; pitch and decay of the partials when the string is left to itself.
+// A string that ends on what was measured, running free: the travelling waves on every type of termination against the modal
+// simulator (the rig of burdened_signals.hpp, which steps the ends as oscillators beside the string). The bridge has twenty
+// modes, as a violin has; the waves are given those, the table that a hammer and a laser would make of them, and the impulse
+// response of a reflection. Waveforms over twenty periods under the bow; pitch and decay of the partials when the string is left
+// to itself.
 //
 #include "support/apart.hpp"
 #include "support/violin_e_string.hpp"
@@ -33,7 +34,8 @@ rosin::modal_termination violin_bridge() {
   const auto chance = [&] { return static_cast<double>(random() % 10000) / 10000; };
   rosin::modal_termination out;
   for (int i = 0; i < 20; ++i) {
-    const double f = 200 * std::pow(30.0, (i + chance()) / 20), hill = std::exp(-std::pow(std::log(f / 2500) / 0.6, 2)), q = 20 + 40 * chance();
+    const double f = 200 * std::pow(30.0, (i + chance()) / 20), hill = std::exp(-std::pow(std::log(f / 2500) / 0.6, 2)),
+                 q = 20 + 40 * chance();
     out.modes.push_back({f, q, impedance / ((0.4 - 0.3 * chance()) * (1 - hill) + 0.02 * hill)});
   }
   return out;
@@ -103,12 +105,15 @@ TEST_CASE("bowed on a violin's bridge, as modes and as a table: the first twenty
   const double twenty_periods_s = 20 / rig.string.fundamental_Hz;
   const auto modes = by_modes({bridge, {}}, law, rod, twenty_periods_s), rigid = by_modes({}, law, rod, twenty_periods_s);
   CHECK(modes.slips > 5);
-  MESSAGE("on rigid ends: Delta of force ", test::delta(rigid.contact_force_N, modes.contact_force_N), ", of velocity ", test::delta(rigid.centre_velocity_m_s, modes.centre_velocity_m_s));
+  MESSAGE("on rigid ends: Delta of force ", test::delta(rigid.contact_force_N, modes.contact_force_N), ", of velocity ",
+          test::delta(rigid.centre_velocity_m_s, modes.centre_velocity_m_s));
   const auto table = measured(bridge);
   for (const auto* end : {&bridge, &table}) {
     const auto waves = by_waves({*end, {}}, law, rod, twenty_periods_s);
-    const double force = test::delta(waves.contact_force_N, modes.contact_force_N), velocity = test::delta(waves.centre_velocity_m_s, modes.centre_velocity_m_s);
-    MESSAGE((end == &table ? "table" : "modes"), ": Delta of force ", force, ", of velocity ", velocity, ", ", waves.slips, " slips, ", modes.slips, " by modes");
+    const double force = test::delta(waves.contact_force_N, modes.contact_force_N),
+                 velocity = test::delta(waves.centre_velocity_m_s, modes.centre_velocity_m_s);
+    MESSAGE((end == &table ? "table" : "modes"), ": Delta of force ", force, ", of velocity ", velocity, ", ", waves.slips,
+            " slips, ", modes.slips, " by modes");
     CHECK(waves.slips == modes.slips);
     CHECK(force < 0.02);
     CHECK(velocity < 0.02);
@@ -117,7 +122,8 @@ TEST_CASE("bowed on a violin's bridge, as modes and as a table: the first twenty
 
 TEST_CASE("left to itself: pitch and decay of the partials") {
   const auto bridge = violin_bridge();
-  const auto wanted = by_modes({bridge, {}}, strike{}, rosin::steady_rod{}, 0.07), rigid = by_modes({}, strike{}, rosin::steady_rod{}, 0.07);
+  const auto wanted = by_modes({bridge, {}}, strike{}, rosin::steady_rod{}, 0.07),
+             rigid = by_modes({}, strike{}, rosin::steady_rod{}, 0.07);
   const auto table = measured(bridge);
   for (const auto* end : {&bridge, &table}) {
     const auto waves = by_waves({*end, {}}, strike{}, rosin::steady_rod{}, 0.07);
@@ -125,13 +131,15 @@ TEST_CASE("left to itself: pitch and decay of the partials") {
     double worst_cents = 0, worst_decay = 0, moved_cents = 0, moved_decay = 0;
     for (int n = 1; n <= 12; ++n) {
       const double f = n * rig.string.fundamental_Hz, rate = settings.sample_rate_Hz;
-      const auto pole = pole_of(wanted.force_far_N, rate, f), found = pole_of(waves.force_far_N, rate, f), stiff = pole_of(rigid.force_far_N, rate, f);
+      const auto pole = pole_of(wanted.force_far_N, rate, f), found = pole_of(waves.force_far_N, rate, f),
+                 stiff = pole_of(rigid.force_far_N, rate, f);
       const auto cents = [&](auto p) { return std::abs(1200 * std::log2(p.imag() / pole.imag())); };
       worst_cents = std::max(worst_cents, cents(found)), moved_cents = std::max(moved_cents, cents(stiff));
-      worst_decay = std::max(worst_decay, std::abs(found.real() - pole.real()) / -pole.real()), moved_decay = std::max(moved_decay, std::abs(stiff.real() - pole.real()) / -pole.real());
+      worst_decay = std::max(worst_decay, std::abs(found.real() - pole.real()) / -pole.real()),
+      moved_decay = std::max(moved_decay, std::abs(stiff.real() - pole.real()) / -pole.real());
     }
-    MESSAGE((end == &table ? "table" : "modes"), ": twelve partials within ", worst_cents, " cents and ", 100 * worst_decay, " % of their decay; the bridge moves them by ", moved_cents, " cents and ",
-            100 * moved_decay, " %");
+    MESSAGE((end == &table ? "table" : "modes"), ": twelve partials within ", worst_cents, " cents and ", 100 * worst_decay,
+            " % of their decay; the bridge moves them by ", moved_cents, " cents and ", 100 * moved_decay, " %");
     CHECK(worst_cents < 0.01);
     CHECK(worst_decay < 0.003);
     CHECK(moved_cents > 1);
@@ -146,8 +154,10 @@ TEST_CASE("an end that reflects by an impulse response: the waves do what its mo
   REQUIRE_MESSAGE(end, end.error());
   const auto like = rosin::as_modes(*end, {.to_Hz = 30e3, .tolerance = 3e-3, .refuse = 0.02});
   REQUIRE_MESSAGE(like, like.error());
-  const auto modes = by_modes({like->end, {}}, strike{}, rosin::steady_rod{}, 0.03), waves = by_waves({like->end, {}}, strike{}, rosin::steady_rod{}, 0.03);
-  MESSAGE(like->end.modes.size(), " modes, reflection off by ", like->mismatch, "; Delta of the far force ", test::delta(waves.force_far_N, modes.force_far_N));
+  const auto modes = by_modes({like->end, {}}, strike{}, rosin::steady_rod{}, 0.03),
+             waves = by_waves({like->end, {}}, strike{}, rosin::steady_rod{}, 0.03);
+  MESSAGE(like->end.modes.size(), " modes, reflection off by ", like->mismatch, "; Delta of the far force ",
+          test::delta(waves.force_far_N, modes.force_far_N));
   CHECK(test::delta(waves.force_far_N, modes.force_far_N) < 0.02);
   CHECK(test::delta(waves.force_near_N, modes.force_near_N) < 0.02);
 }

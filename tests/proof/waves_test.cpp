@@ -30,7 +30,8 @@ void compare(const Law& law, const rosin::profiled_rod& rod, double position) {
   CHECK(waves->unconverged == 0);
   CHECK(waves->slips == modes->slips);
   CHECK(waves->slips > 0);
-  const double force = test::delta(waves->contact_force_N, modes->contact_force_N), velocity = test::delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s);
+  const double force = test::delta(waves->contact_force_N, modes->contact_force_N),
+               velocity = test::delta(waves->centre_velocity_m_s, modes->centre_velocity_m_s);
   MESSAGE("position ", position, ": Delta of force ", force, ", of velocity ", velocity, ", ", waves->slips, " slips");
   CHECK(force <= 0.01);
   CHECK(velocity <= 0.01);
@@ -57,11 +58,14 @@ TEST_CASE("bow that travels: Delta at most 0.01 over twenty periods") {
   compare(thermal(1.2), rod, 0.3);
 }
 
-TEST_CASE("strokes drawn at random, thermal friction: most within 0.01, all nearer to the modes than these come to themselves at twice the rate") {
+TEST_CASE(
+    "strokes drawn at random, thermal friction: most within 0.01, all nearer to the modes than these come to themselves at twice "
+    "the rate") {
   int strokes = 0, within = 0;
   for (std::uint64_t seed = 5000; seed < 5048; ++seed) {
     const auto r = rosin::draw_rig(seed);
-    if (!r.thermal()) continue;  // under a velocity curve all such strokes are chaotic: modes up to 250 kHz and up to 400 kHz part by 0.2 to 0.9
+    if (!r.thermal())
+      continue;  // under a velocity curve all such strokes are chaotic: modes up to 250 kHz and up to 400 kHz part by 0.2 to 0.9
     CAPTURE(seed);
     const auto& law = std::get<1>(r.law);
     const auto& rod = r.strokes[0];
@@ -74,7 +78,8 @@ TEST_CASE("strokes drawn at random, thermal friction: most within 0.01, all near
     const auto waves = rosin::simulate_wave_stroke(r.rig, law, rod, {r.position, duration_s}, settings);
     REQUIRE((modes && twice && waves));
     CHECK(waves->unconverged == 0);
-    const double force = test::delta(waves->contact_force_N, modes->contact_force_N), own = test::delta(twice->contact_force_N, modes->contact_force_N);
+    const double force = test::delta(waves->contact_force_N, modes->contact_force_N),
+                 own = test::delta(twice->contact_force_N, modes->contact_force_N);
     CHECK(force < own);
     ++strokes;
     within += force <= 0.01;
@@ -90,7 +95,8 @@ TEST_CASE("at twice the rate of the contact a stroke comes closer to what it is 
     return *rosin::simulate_wave_stroke(rig, thermal(1.2), ramp(0.03, 1.2), {0.3, twenty_periods_s}, settings);
   };
   const auto finest = at(64), fine = at(16), coarse = at(8);
-  const double one = test::delta(coarse.contact_force_N, finest.contact_force_N), half = test::delta(fine.contact_force_N, finest.contact_force_N);
+  const double one = test::delta(coarse.contact_force_N, finest.contact_force_N),
+               half = test::delta(fine.contact_force_N, finest.contact_force_N);
   MESSAGE("Delta to 4.1 MHz: ", one, " at 512 kHz, ", half, " at 1.02 MHz");
   CHECK(half < 0.75 * one);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A stiff string between terminations that move, by component modes (Hurty 1960, Craig and Bampton 1968), for tests: another method
-// than anything in the library. With u_1, u_2 the motion of the ends,
+// A stiff string between terminations that move, by component modes (Hurty 1960, Craig and Bampton 1968), for tests: another
+// method than anything in the library. With u_1, u_2 the motion of the ends,
 //
 //     y(x, t) = sum_n a_n(t) sin(n pi x / L) + u_1 (1 - x / L) + u_2 x / L,     u_j = sum_k q_jk,   M_k q'' + (M_k w_k / Q_k) q' + M_k w_k^2 q = F_j
 //
@@ -51,13 +51,15 @@ public:
     const auto modes = rosin::transverse_modes(rig.string, s.mode_limit_Hz);
     const auto N = static_cast<Eigen::Index>(modes.size()), near = static_cast<Eigen::Index>(rig.ends[0].size());
     const Eigen::Index n = N + near + static_cast<Eigen::Index>(rig.ends[1].size());
-    const double mass = rig.string.linear_density_kg_m() * rig.string.length_m, per_length = rig.string.tension_N / rig.string.length_m;
+    const double mass = rig.string.linear_density_kg_m() * rig.string.length_m,
+                 per_length = rig.string.tension_N / rig.string.length_m;
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n), C = M, K = M;
     Eigen::MatrixXd weigh = Eigen::MatrixXd::Zero(n, 2), pull = weigh;  // momentum and tension against 1 - x / L, x / L
     shape_ = Eigen::VectorXd::Zero(n);
     for (Eigen::Index i = 0; i < N; ++i) {
       const auto& m = modes[static_cast<std::size_t>(i)];
-      M(i, i) = m.mass_kg, K(i, i) = m.mass_kg * m.omega_rad_s * m.omega_rad_s, C(i, i) = m.mass_kg * m.omega_rad_s * m.inverse_quality;
+      M(i, i) = m.mass_kg, K(i, i) = m.mass_kg * m.omega_rad_s * m.omega_rad_s,
+           C(i, i) = m.mass_kg * m.omega_rad_s * m.inverse_quality;
       const double across = mass / (m.number * std::numbers::pi);
       weigh.row(i) << across, across * m.parity();
       shape_[i] = m.shape(position);
@@ -84,7 +86,8 @@ public:
   [[nodiscard]] double step_s() const { return step_s_; }
   [[nodiscard]] double rest_m_N() const { return rest_m_N_; }
   [[nodiscard]] rosin::load_line<double> line(const rosin::rod_state& rod) const {
-    return {free_[0] - rest_m_N_ / step_s_ * force_, at_once_[0] + rest_m_N_ / step_s_, rod.velocity_m_s, rod.normal_force_N, step_s_};
+    return {free_[0] - rest_m_N_ / step_s_ * force_, at_once_[0] + rest_m_N_ / step_s_, rod.velocity_m_s, rod.normal_force_N,
+            step_s_};
   }
   /// Deflected by a force, at rest.
   void hold(double force_N) {
@@ -95,7 +98,8 @@ public:
   }
   /// Ends the step with this force: velocity (without what the truncated modes add), near, far.
   std::array<double, 3> apply(double force_N) {
-    const std::array<double, 3> now{free_[0] + at_once_[0] * force_N, free_[1] + at_once_[1] * force_N, free_[2] + at_once_[2] * force_N};
+    const std::array<double, 3> now{free_[0] + at_once_[0] * force_N, free_[1] + at_once_[1] * force_N,
+                                    free_[2] + at_once_[2] * force_N};
     state_ += end_.cwiseProduct(push_) * force_N;
     state_ = decay_.cwiseProduct(state_) + begin_.cwiseProduct(push_) * force_N;
     read();
@@ -104,7 +108,8 @@ public:
   }
 
 private:
-  void solve(const Eigen::MatrixXd& M, const Eigen::MatrixXd& C, const Eigen::MatrixXd& K, const Eigen::MatrixXd& weigh, const Eigen::MatrixXd& pull) {
+  void solve(const Eigen::MatrixXd& M, const Eigen::MatrixXd& C, const Eigen::MatrixXd& K, const Eigen::MatrixXd& weigh,
+             const Eigen::MatrixXd& pull) {
     const Eigen::Index n = M.rows();
     const Eigen::LLT<Eigen::MatrixXd> mass(M);
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
@@ -143,7 +148,8 @@ private:
       out_.col(k) = (poles[i].imag() > 0 ? 2.0 : 1.0) * out.col(i);
     }
     for (Eigen::Index o = 0; o < 3; ++o)
-      at_once_[static_cast<std::size_t>(o)] = direct_[static_cast<std::size_t>(o)] + (out_.row(o) * end_.cwiseProduct(push_))(0).real();
+      at_once_[static_cast<std::size_t>(o)] =
+          direct_[static_cast<std::size_t>(o)] + (out_.row(o) * end_.cwiseProduct(push_))(0).real();
   }
   void read() {
     for (Eigen::Index o = 0; o < 3; ++o) free_[static_cast<std::size_t>(o)] = (out_.row(o) * state_)(0).real();
@@ -158,10 +164,12 @@ private:
 
 /// A take of `duration_s`; `force_at(string, t)` finds the force of each step. All signals through one low-pass.
 template <class Force>
-[[nodiscard]] moving_take run_moving_ends(moving_end_string& string, const moving_settings& s, double duration_s, Force force_at) {
+[[nodiscard]] moving_take run_moving_ends(moving_end_string& string, const moving_settings& s, double duration_s,
+                                          Force force_at) {
   const rosin::modal_settings sampling{.sample_rate_Hz = s.rate_Hz, .oversampling = s.oversampling};
   const rosin::modal_decimator decimate{sampling.low_pass(), string.step_s(), s.oversampling};
-  const auto steps = static_cast<std::size_t>(duration_s * s.rate_Hz) * static_cast<std::size_t>(s.oversampling) + 1 + 2 * decimate.reach();
+  const auto steps =
+      static_cast<std::size_t>(duration_s * s.rate_Hz) * static_cast<std::size_t>(s.oversampling) + 1 + 2 * decimate.reach();
   std::array<std::vector<double>, 4> all;
   for (auto& x : all) x.resize(steps);
   for (std::size_t i = 0; i < steps; ++i) {
@@ -177,18 +185,20 @@ template <class Force>
 
 /// Bowed from rest.
 template <rosin::FrictionLaw Law>
-[[nodiscard]] moving_take bow_moving_ends(const moving_end_rig& rig, double position, Law law, const rosin::steady_rod& rod, double duration_s,
-                                          const moving_settings& s = {}) {
+[[nodiscard]] moving_take bow_moving_ends(const moving_end_rig& rig, double position, Law law, const rosin::steady_rod& rod,
+                                          double duration_s, const moving_settings& s = {}) {
   moving_end_string string(rig, position, s);
-  return run_moving_ends(string, s, duration_s, [&](const moving_end_string& now, double t) { return law(now.line(rod(t))).force_N; });
+  return run_moving_ends(string, s, duration_s,
+                         [&](const moving_end_string& now, double t) { return law(now.line(rod(t))).force_N; });
 }
 
 /// Held by a force that is gone from `release_s` on.
-[[nodiscard]] inline moving_take pluck_moving_ends(const moving_end_rig& rig, double position, double force_N, double release_s, double duration_s,
-                                                   const moving_settings& s = {}) {
+[[nodiscard]] inline moving_take pluck_moving_ends(const moving_end_rig& rig, double position, double force_N, double release_s,
+                                                   double duration_s, const moving_settings& s = {}) {
   moving_end_string string(rig, position, s);
   string.hold(force_N);
-  return run_moving_ends(string, s, duration_s, [&](const moving_end_string&, double t) { return t < release_s ? force_N : 0.0; });
+  return run_moving_ends(string, s, duration_s,
+                         [&](const moving_end_string&, double t) { return t < release_s ? force_N : 0.0; });
 }
 
 /// What a transducer makes of a force: white noise and a converter of 16 bits.

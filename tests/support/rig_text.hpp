@@ -95,9 +95,9 @@ inline std::string problems_of(std::string_view text) { return rosin::parse_rig(
 }  // namespace test
 
 /// One check a row, so that a failure shows the row.
-#define CHECK_BAD_KEYS(rows)                                                   \
-  for (const auto& row : rows) {                                               \
-    CAPTURE(row.from);                                                         \
-    CAPTURE(row.to);                                                           \
-    CHECK(test::problems_of(test::changed(row.from, row.to)) == row.message);  \
+#define CHECK_BAD_KEYS(rows)                                                  \
+  for (const auto& row : rows) {                                              \
+    CAPTURE(row.from);                                                        \
+    CAPTURE(row.to);                                                          \
+    CHECK(test::problems_of(test::changed(row.from, row.to)) == row.message); \
   }

@@ -27,7 +27,8 @@ inline std::vector<double> plucked(double f0, double b, double noise, unsigned s
     const double warped = t + glide * (1 - std::exp(-5 * t)) / 5;
     for (int n = 1; n <= 25; ++n) {
       const double f = n * f0 * std::sqrt(1 + b * n * n);
-      x[i] += std::exp(-std::numbers::pi * f * (1 / 1200.0 + 2e-7 * f) * t) / n * std::cos(2 * std::numbers::pi * f * warped + offset[static_cast<std::size_t>(n)]);
+      x[i] += std::exp(-std::numbers::pi * f * (1 / 1200.0 + 2e-7 * f) * t) / n *
+              std::cos(2 * std::numbers::pi * f * warped + offset[static_cast<std::size_t>(n)]);
     }
   }
   return x;

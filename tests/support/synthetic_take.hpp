@@ -51,8 +51,7 @@ inline std::vector<std::vector<double>> pluck_forces(const pluck& p) {
     out[1][i] = p.force_N * p.position;
   }
   const int modes = static_cast<int>(0.4 * p.rate_Hz / p.fundamental_Hz);
-  for (int n = 1; n <= modes; ++n)
-    add_mode(p, n, std::pow(std::cos(1.5707963267948966 * n / (modes + 1)), 2), first, out);
+  for (int n = 1; n <= modes; ++n) add_mode(p, n, std::pow(std::cos(1.5707963267948966 * n / (modes + 1)), 2), first, out);
   for (std::size_t i = 0; i < frames; ++i) {
     out[0][i] = p.near_gain * out[0][i] + noise(random);
     out[1][i] = p.far_gain * out[1][i] + noise(random);

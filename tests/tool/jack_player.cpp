@@ -53,6 +53,7 @@ int main(int count, char** words) {
   if (jack_activate(client) != 0) return 1;
   std::puts("ready");
   std::fflush(stdout);
-  while (std::getchar() != EOF) {}
+  while (std::getchar() != EOF) {
+  }
   jack_client_close(client);
 }

@@ -22,8 +22,8 @@ namespace detail {
   return false;
 }
 
-/// The pitch of the ringing against the declared one, and how long it lasts. A pitch that is off is an error where it looks like a wrong sampling
-/// rate or like another string; a bead can lower it by a tenth. True if it may be the declared string's.
+/// The pitch of the ringing against the declared one, and how long it lasts. A pitch that is off is an error where it looks like
+/// a wrong sampling rate or like another string; a bead can lower it by a tenth. True if it may be the declared string's.
 [[nodiscard]] inline bool check_ringing(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
   const double rate = view.signals->sample_rate_Hz;
   const std::span<const double> tail{s.values.data() + start, s.values.size() - start};
@@ -34,13 +34,15 @@ namespace detail {
   if (quality) out.quality = std::min(*quality, out.quality.value_or(*quality));
   if (quality && *quality < 25)
     out.add(grade, "does-not-ring", s.sensor.name, t, out.duration_s,
-            "the ringing dies within a few periods (Q about " + figure(*quality, "%.0f") + ")", "free the string of what touches it");
+            "the ringing dies within a few periods (Q about " + figure(*quality, "%.0f") + ")",
+            "free the string of what touches it");
   if (!found) return false;
-  const double off = found->pitch_Hz / view.fundamental_Hz - 1, limit = 0.015 + 2 * view.from->string.fundamental_tolerance.value_or(0.003);
+  const double off = found->pitch_Hz / view.fundamental_Hz - 1,
+               limit = 0.015 + 2 * view.from->string.fundamental_tolerance.value_or(0.003);
   bool other_string = false;
   if (found->score < 0.3)
-    out.add(severity::warning, "not-periodic", s.sensor.name, t, out.duration_s, "the ringing is no harmonic series near the declared pitch",
-            "check fundamental_Hz and what else sounds");
+    out.add(severity::warning, "not-periodic", s.sensor.name, t, out.duration_s,
+            "the ringing is no harmonic series near the declared pitch", "check fundamental_Hz and what else sounds");
   else if (std::abs(off) > limit) {
     const double as_if_Hz = rate / (1 + off);
     const bool rate_is_wrong = is_usual_rate(as_if_Hz);
@@ -48,7 +50,8 @@ namespace detail {
     out.add(other_string ? grade : severity::warning, "wrong-pitch", s.sensor.name, t, out.duration_s,
             "rings at " + figure(found->pitch_Hz, "%.2f") + " Hz, fundamental_Hz is " + figure(view.fundamental_Hz, "%.2f") +
                 (rate_is_wrong ? ": as if recorded at " + figure(as_if_Hz, "%.0f") + " samples a second" : std::string{}),
-            rate_is_wrong ? "check the sample rate in the file's header and fundamental_Hz" : "check fundamental_Hz, and whether something sits on the string");
+            rate_is_wrong ? "check the sample rate in the file's header and fundamental_Hz"
+                          : "check fundamental_Hz, and whether something sits on the string");
   }
   out.pitch_Hz = found->pitch_Hz;
   return found->score >= 0.3 && !other_string;
@@ -57,11 +60,12 @@ namespace detail {
 inline void check_tail_hum(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
   for (auto& c : out.channels)
     if (c.channel == s.sensor.name)
-      report_hum(out, c, *view.signals, start, find_hum({s.values.data() + start, s.values.size() - start},
-                                                        view.signals->sample_rate_Hz, view.fundamental_Hz));
+      report_hum(out, c, *view.signals, start,
+                 find_hum({s.values.data() + start, s.values.size() - start}, view.signals->sample_rate_Hz, view.fundamental_Hz));
 }
 
-/// A string that rings as declared at one end, at this pitch, is no other string, whatever rings loudest at the other: a heavy bead may leave an octave there.
+/// A string that rings as declared at one end, at this pitch, is no other string, whatever rings loudest at the other: a heavy
+/// bead may leave an octave there.
 inline void doubt_other_pitch(take_check& out, double pitch_Hz) {
   out.pitch_Hz = pitch_Hz;
   for (finding& f : out.findings)
@@ -127,7 +131,8 @@ inline void check_bow(take_check& out, const rig& r, const take& t) {
   const double least = 0.03 * t.normal_force_N.value_or(0);
   const bool counts = std::min(std::abs(near), std::abs(far)) > least && near != 0 && far != 0;
   if (counts && near < 0 && far < 0)
-    out.add(severity::warning, "bowed-backwards", "", 0, out.duration_s, "both mean forces are negative: the bow moves the other way",
+    out.add(severity::warning, "bowed-backwards", "", 0, out.duration_s,
+            "both mean forces are negative: the bow moves the other way",
             "forces are positive the way the bow moves; turn both polarities round, or read the result with the sign turned");
   else if (counts && near * far < 0)
     out.add(severity::error, "inverted-channel", near < 0 ? "near" : "far", 0, out.duration_s,
@@ -145,7 +150,8 @@ inline void check_bow(take_check& out, const rig& r, const take& t) {
   const rig_values values = values_of(r);
   double inharmonicity = 0;
   if (values.bending_stiffness_Nm2 && values.tension_N && values.length_m)
-    inharmonicity = 9.8696 * values.bending_stiffness_Nm2->value / (values.tension_N->value * std::pow(values.length_m->value, 2));
+    inharmonicity =
+        9.8696 * values.bending_stiffness_Nm2->value / (values.tension_N->value * std::pow(values.length_m->value, 2));
   const detail::pluck_view view{&r, &t, &signals, r.string.fundamental_Hz, inharmonicity};
   if (t.kind == take_kind::quiet) detail::check_quiet(out, signals, r.string.fundamental_Hz);
   else if (t.kind == take_kind::bow) detail::check_bow(out, r, t);

@@ -33,7 +33,8 @@ namespace detail {
     if (const double a = at(f); a > best.amplitude) best = {f, a};
   }
   if (std::abs(best.frequency_Hz - nominal) > 0.9 * reach) return std::nullopt;
-  std::array<double, 4> beside{at(nominal - 3.3 * bin), at(nominal - 2.6 * bin), at(nominal + 2.6 * bin), at(nominal + 3.3 * bin)};
+  std::array<double, 4> beside{at(nominal - 3.3 * bin), at(nominal - 2.6 * bin), at(nominal + 2.6 * bin),
+                               at(nominal + 3.3 * bin)};
   std::sort(beside.begin(), beside.end());
   if (best.amplitude < 5 * beside[2]) return std::nullopt;
   return best;

@@ -71,10 +71,11 @@ inline void check_order(take_check& out, const pluck_view& view, const pluck_ste
   const double t = view.signals->time_s(steps.near.frame);
   const auto mirrored = [&](double beta) { return std::abs(beta - (1 - *declared)) < 0.5 * std::abs(beta - *declared); };
   const std::string figures = "the release reaches the ends as if plucked at " + figure(by_arrival, "%.3f") +
-                              (levels ? ", the levels before it say " + figure(by_level, "%.3f") : std::string{}) + ", declared is " +
-                              figure(*declared, "%.3f");
+                              (levels ? ", the levels before it say " + figure(by_level, "%.3f") : std::string{}) +
+                              ", declared is " + figure(*declared, "%.3f");
   if (mirrored(by_arrival) && mirrored(by_level))
-    out.add(severity::error, "swapped-channels", "", 0, t, figures, "near and far are swapped, or position counts from the wrong end");
+    out.add(severity::error, "swapped-channels", "", 0, t, figures,
+            "near and far are swapped, or position counts from the wrong end");
   else if (std::abs(by_level - *declared) > 0.06 || std::abs(by_arrival - *declared) > 0.06)
     out.add(severity::warning, "wrong-position", "", 0, t, figures, "check the position, the gains and the fundamental");
 }
@@ -89,7 +90,8 @@ inline void check_tail(take_check& out, const pluck_view& view, const take_signa
   for (std::size_t i = s.values.size() - count; i < s.values.size(); ++i) mean += s.values[i] / static_cast<double>(count);
   if (std::abs(mean) > 0.03 * std::abs(step.height))
     out.add(severity::warning, "offset", s.sensor.name, out.duration_s - view.signals->time_s(count), out.duration_s,
-            "the ringing's mean is " + figure(mean) + " N instead of zero", "set the zero of the amplifier with the string at rest");
+            "the ringing's mean is " + figure(mean) + " N instead of zero",
+            "set the zero of the amplifier with the string at rest");
 }
 
 /// The release at the string, from its arrival at both ends.
@@ -101,7 +103,8 @@ inline void check_tail(take_check& out, const pluck_view& view, const take_signa
 /// True if the take holds a release.
 inline bool check_steps(take_check& out, const pluck_view& view, pluck_steps& steps) {
   bool all = true;
-  for (const auto& [name, step, level] : {std::tuple{"near", &steps.near, &steps.near_level}, std::tuple{"far", &steps.far, &steps.far_level}}) {
+  for (const auto& [name, step, level] :
+       {std::tuple{"near", &steps.near, &steps.near_level}, std::tuple{"far", &steps.far, &steps.far_level}}) {
     const auto& x = view.signals->find(name)->values;
     const double rate = view.signals->sample_rate_Hz, force = view.what->force_N.value_or(0);
     const auto found = rosin::find_release_step(x, rate, view.fundamental_Hz);

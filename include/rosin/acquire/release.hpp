@@ -32,13 +32,11 @@ namespace detail {
 
 /// The first step that is at least half as high as the highest. Empty where the record is shorter than a few periods.
 [[nodiscard]] inline std::optional<step_arrival> find_release_step(const std::vector<double>& x, double sample_rate_Hz,
-                                                            double fundamental_Hz) {
+                                                                   double fundamental_Hz) {
   const auto half = static_cast<std::size_t>(std::max(2.0, std::round(sample_rate_Hz / (20 * fundamental_Hz))));
   if (x.size() < 8 * half) return std::nullopt;
   const auto sum = detail::running_sum(x);
-  const auto height = [&](std::size_t i) {
-    return (sum[i + half] - 2 * sum[i] + sum[i - half]) / static_cast<double>(half);
-  };
+  const auto height = [&](std::size_t i) { return (sum[i + half] - 2 * sum[i] + sum[i - half]) / static_cast<double>(half); };
   double highest = 0;
   for (std::size_t i = half; i + half < x.size(); ++i) highest = std::max(highest, std::abs(height(i)));
   std::size_t first = half;

@@ -21,8 +21,8 @@ namespace rosin {
 
 /// What a channel measures; its SI unit is N, m/s, m, Pa, N, m/s. An unused channel is recorded but holds nothing of use.
 enum class quantity { termination_force, string_velocity, string_displacement, sound, normal_force, bow_speed, unused };
-inline constexpr std::array quantity_names{"termination-force", "string-velocity", "string-displacement", "sound",
-                                           "normal-force",      "bow-speed",       "unused"};
+inline constexpr std::array quantity_names{"termination-force", "string-velocity", "string-displacement", "sound", "normal-force",
+                                           "bow-speed",         "unused"};
 
 enum class take_kind { pluck, quiet, bow };
 inline constexpr std::array take_kind_names{"pluck", "quiet", "bow"};
@@ -32,9 +32,7 @@ inline constexpr std::array friction_model_names{"velocity-curve", "thermal", "e
 
 [[nodiscard]] inline std::string name_of(quantity what) { return quantity_names.at(static_cast<std::size_t>(what)); }
 [[nodiscard]] inline std::string name_of(take_kind what) { return take_kind_names.at(static_cast<std::size_t>(what)); }
-[[nodiscard]] inline std::string name_of(friction_model what) {
-  return friction_model_names.at(static_cast<std::size_t>(what));
-}
+[[nodiscard]] inline std::string name_of(friction_model what) { return friction_model_names.at(static_cast<std::size_t>(what)); }
 
 /// [string]
 struct string_section {
@@ -94,8 +92,8 @@ struct friction_term {
 struct friction_section {
   std::vector<friction_term> terms;  ///< mu(v) = constant + sum of the terms
   std::optional<double> constant;
-  std::optional<double> contact_radius_m, layer_thickness_m, ambient_C;                     ///< thermal
-  std::optional<double> bristle_stiffness_N_m, bristle_damping_Ns_m, break_away_fraction;   ///< elasto-plastic
+  std::optional<double> contact_radius_m, layer_thickness_m, ambient_C;                    ///< thermal
+  std::optional<double> bristle_stiffness_N_m, bristle_damping_Ns_m, break_away_fraction;  ///< elasto-plastic
   std::optional<double> static_coefficient, dynamic_coefficient, stribeck_speed_m_s, viscous_Ns_m;
 };
 
@@ -106,12 +104,12 @@ using profile = std::vector<std::pair<double, double>>;
 struct take {
   std::string name;
   take_kind kind = take_kind::quiet;
-  std::string file;  ///< as written, relative to the rig's folder
-  std::optional<double> force_N, force_tolerance, strength;       ///< pluck
-  std::optional<double> speed_m_s, normal_force_N;                ///< bow, once the stroke is steady
-  profile speed_profile_m_s, normal_force_profile_N;              ///< bow, empty where unknown
-  profile position_profile;                                       ///< bow, empty where it stays at one place of the string
-  std::optional<double> contact_position, start_s;                ///< start_s: release or onset, for simulate
+  std::string file;                                          ///< as written, relative to the rig's folder
+  std::optional<double> force_N, force_tolerance, strength;  ///< pluck
+  std::optional<double> speed_m_s, normal_force_N;           ///< bow, once the stroke is steady
+  profile speed_profile_m_s, normal_force_profile_N;         ///< bow, empty where unknown
+  profile position_profile;                                  ///< bow, empty where it stays at one place of the string
+  std::optional<double> contact_position, start_s;           ///< start_s: release or onset, for simulate
   bool position_unknown = false;
   bool hold_out = false;  ///< never fitted, only predicted
   int line = 0;           ///< of the rig file, for messages

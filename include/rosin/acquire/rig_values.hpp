@@ -45,8 +45,8 @@ inline constexpr double default_position_tolerance = 0.005, default_tension_tole
 }
 
 /// The value given, or the default with the sentence that owns up to it.
-[[nodiscard]] inline double given_or(const std::optional<double>& given, double fallback, const std::string& key,
-                                     rig_values& out, const std::string& why = "none given") {
+[[nodiscard]] inline double given_or(const std::optional<double>& given, double fallback, const std::string& key, rig_values& out,
+                                     const std::string& why = "none given") {
   if (!given) out.assumed.push_back(sentence(key, fallback, why));
   return given.value_or(fallback);
 }
@@ -74,8 +74,8 @@ inline void derive_string(const string_section& s, rig_values& out) {
   out.fundamental_Hz = *relative(s.fundamental_Hz, s.fundamental_tolerance, default_fundamental_tolerance, "fundamental", out);
   out.length_m = relative(s.length_m, s.length_tolerance, default_length_tolerance, "length", out);
   out.tension_N = relative(s.tension_N, s.tension_tolerance, default_tension_tolerance, "tension", out);
-  out.bending_stiffness_Nm2 = relative(s.bending_stiffness_Nm2, s.bending_stiffness_tolerance, default_stiffness_tolerance,
-                                       "bending_stiffness", out);
+  out.bending_stiffness_Nm2 =
+      relative(s.bending_stiffness_Nm2, s.bending_stiffness_tolerance, default_stiffness_tolerance, "bending_stiffness", out);
   if (const auto stiffness = wire_stiffness(s); stiffness && !out.bending_stiffness_Nm2) {
     out.bending_stiffness_Nm2 = nominal{*stiffness, *stiffness * 0.1};
     out.assumed.push_back(sentence("bending_stiffness_Nm2", *stiffness, "from Young's modulus and diameter (solid wire)"));
@@ -138,8 +138,9 @@ inline void note_model(const rig& r, rig_values& out) {
   out.loss_internal_s = r.string.loss_internal_s.value_or(0);
   out.loss_air_sqrt_Hz = r.string.loss_air_sqrt_Hz.value_or(0);
   if (r.contact_position)
-    out.position = nominal{*r.contact_position, detail::given_or(r.position_tolerance, detail::default_position_tolerance,
-                                                                 "position_tolerance", out) / 2};
+    out.position =
+        nominal{*r.contact_position,
+                detail::given_or(r.position_tolerance, detail::default_position_tolerance, "position_tolerance", out) / 2};
   detail::note_channels_and_takes(r, out);
   detail::note_model(r, out);
   return out;

@@ -16,9 +16,9 @@
 namespace rosin {
 
 struct ringing {
-  double pitch_Hz = 0;    ///< of the comb, without stiffness
-  double score = 0;       ///< 0 ... 1: how well the comb explains the lines
-  double at_declared = 0; ///< the same for a comb at the declared pitch
+  double pitch_Hz = 0;     ///< of the comb, without stiffness
+  double score = 0;        ///< 0 ... 1: how well the comb explains the lines
+  double at_declared = 0;  ///< the same for a comb at the declared pitch
 };
 
 namespace detail {
@@ -67,7 +67,8 @@ struct partial_comb {
 [[nodiscard]] inline std::optional<ringing> find_ringing(std::span<const double> x, double sample_rate_Hz, double declared_Hz,
                                                          double inharmonicity) {
   if (static_cast<double>(x.size()) * declared_Hz < 8 * sample_rate_Hz) return std::nullopt;
-  const auto lines = strongest_lines(x, sample_rate_Hz, declared_Hz / 3.5, std::min(0.45 * sample_rate_Hz, 9.5 * declared_Hz), 16);
+  const auto lines =
+      strongest_lines(x, sample_rate_Hz, declared_Hz / 3.5, std::min(0.45 * sample_rate_Hz, 9.5 * declared_Hz), 16);
   if (lines.empty()) return std::nullopt;
   const detail::partial_comb comb{lines, inharmonicity, 0.012, 1.5 * sample_rate_Hz / static_cast<double>(x.size())};
   ringing best{};

@@ -128,13 +128,15 @@ namespace detail {
 }  // namespace detail
 
 /// Where samples were lost: the last value held, or zeros put in their place. What was cut off is held by that.
-[[nodiscard]] inline std::vector<sample_span> dropouts(const std::vector<double>& x, double step, const std::vector<sample_span>& cut = {}) {
+[[nodiscard]] inline std::vector<sample_span> dropouts(const std::vector<double>& x, double step,
+                                                       const std::vector<sample_span>& cut = {}) {
   auto repeats = spans_where(x.size(), [&](std::size_t i) { return i > 0 && x[i] == x[i - 1]; });
   const double chance = detail::chance_of_repeat(x, repeats);
   if (chance > 0.2) return {};  // a signal without noise repeats itself anyway
   for (auto& r : repeats) r = {r.first - 1, r.count + 1};
   std::erase_if(repeats, [&](const sample_span& s) {
-    return !detail::is_frozen(x, s, step, chance) || std::any_of(cut.begin(), cut.end(), [&](const sample_span& c) { return c.first < s.end() && s.first < c.end(); });
+    return !detail::is_frozen(x, s, step, chance) ||
+           std::any_of(cut.begin(), cut.end(), [&](const sample_span& c) { return c.first < s.end() && s.first < c.end(); });
   });
   return repeats;
 }

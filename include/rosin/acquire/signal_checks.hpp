@@ -19,8 +19,8 @@ namespace rosin {
 struct channel_check {
   std::string channel, unit;
   double lowest = 0, highest = 0, mean = 0, rms = 0;
-  double of_full_scale = 0;            ///< largest magnitude / full scale
-  std::optional<double> noise_rms;     ///< where something quiet was recorded
+  double of_full_scale = 0;         ///< largest magnitude / full scale
+  std::optional<double> noise_rms;  ///< where something quiet was recorded
   std::optional<hum_estimate> hum;
 };
 
@@ -47,10 +47,14 @@ struct take_check {
   if (!sensor.per_full_scale) return "of full scale";
   switch (sensor.quantity) {
     case quantity::string_velocity:
-    case quantity::bow_speed: return "m/s";
-    case quantity::string_displacement: return "m";
-    case quantity::sound: return "Pa";
-    default: return "N";
+    case quantity::bow_speed:
+      return "m/s";
+    case quantity::string_displacement:
+      return "m";
+    case quantity::sound:
+      return "Pa";
+    default:
+      return "N";
   }
 }
 
@@ -70,14 +74,15 @@ namespace detail {
 }
 
 /// One finding for all spans of a kind, from the first to the last of them.
-inline void report_spans(take_check& out, const take_signals& from, const std::string& channel, const std::vector<sample_span>& spans,
-                         const std::string& kind, const std::string& what, const std::string& advice,
-                         severity level = severity::error) {
+inline void report_spans(take_check& out, const take_signals& from, const std::string& channel,
+                         const std::vector<sample_span>& spans, const std::string& kind, const std::string& what,
+                         const std::string& advice, severity level = severity::error) {
   if (spans.empty()) return;
   const std::size_t samples = samples_in(spans);
   out.add(level, kind, channel, from.time_s(spans.front().first), from.time_s(spans.back().end()),
           what + ": " + std::to_string(samples) + " samples in " + std::to_string(spans.size()) + " place(s), first at sample " +
-              std::to_string(spans.front().first), advice);
+              std::to_string(spans.front().first),
+          advice);
 }
 
 [[nodiscard]] inline channel_check figures_of(const take_signal& s) {
@@ -112,17 +117,20 @@ inline void check_offset(take_check& out, const take_signal& s, const channel_ch
   if (!(quiet || settled || no_direct)) return;
   const double limit = quiet ? std::max(0.01 * s.full_scale, 10 * c.rms) : std::max(0.1 * c.rms, 1e-3 * s.full_scale);
   if (std::abs(c.mean) <= limit) return;
-  out.add(severity::warning, "offset", c.channel, 0, out.duration_s, "a mean of " + figure(c.mean) + " " + c.unit + " where there should be none",
+  out.add(severity::warning, "offset", c.channel, 0, out.duration_s,
+          "a mean of " + figure(c.mean) + " " + c.unit + " where there should be none",
           "set the amplifier's zero, or take the mean of a quiet take off");
 }
 
-inline void report_hum(take_check& out, channel_check& c, const take_signals& from, std::size_t first, std::optional<hum_estimate> hum) {
+inline void report_hum(take_check& out, channel_check& c, const take_signals& from, std::size_t first,
+                       std::optional<hum_estimate> hum) {
   if (!hum) return;
   double strongest = 0;
   for (const auto& line : hum->lines) strongest = std::max(strongest, line.amplitude);
   if (strongest > 0.002 * c.rms)
     out.add(severity::warning, "hum", c.channel, from.time_s(first), out.duration_s,
-            "mains hum of " + figure(hum->frequency_Hz, "%.0f") + " Hz, " + figure(strongest) + " " + c.unit + " in its strongest line",
+            "mains hum of " + figure(hum->frequency_Hz, "%.0f") + " Hz, " + figure(strongest) + " " + c.unit +
+                " in its strongest line",
             "shield and earth the sensor; what is left, a quiet take helps to model");
   c.hum = std::move(hum);
 }

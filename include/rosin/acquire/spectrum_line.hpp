@@ -92,7 +92,8 @@ namespace detail {
   for (const double v : x) largest = std::max(largest, std::abs(v));
   for (std::size_t k = 2; k + 2 < bins.size(); ++k) {
     const double f = static_cast<double>(k) * width;
-    if (f < low_Hz || f > high_Hz || bins[k] < bins[k - 1] || bins[k] <= bins[k + 1] || bins[k - 1] <= 0 || bins[k + 1] <= 0) continue;
+    if (f < low_Hz || f > high_Hz || bins[k] < bins[k - 1] || bins[k] <= bins[k + 1] || bins[k - 1] <= 0 || bins[k + 1] <= 0)
+      continue;
     const double a = std::log(bins[k - 1]), b = std::log(bins[k]), c = std::log(bins[k + 1]);
     const double shift = a - 2 * b + c < 0 ? (a - c) / (2 * (a - 2 * b + c)) : 0.0;
     out.push_back({f + shift * width, std::exp(b - (a - c) * shift / 4)});

@@ -40,16 +40,23 @@ using sndfile_handle = std::unique_ptr<SNDFILE, close_sndfile>;
 [[nodiscard]] inline int sample_bits(int format) noexcept {
   switch (format & SF_FORMAT_SUBMASK) {
     case SF_FORMAT_PCM_S8:
-    case SF_FORMAT_PCM_U8: return 8;
+    case SF_FORMAT_PCM_U8:
+      return 8;
     case SF_FORMAT_PCM_16:
-    case SF_FORMAT_ALAC_16: return 16;
+    case SF_FORMAT_ALAC_16:
+      return 16;
     case SF_FORMAT_PCM_24:
-    case SF_FORMAT_ALAC_24: return 24;
+    case SF_FORMAT_ALAC_24:
+      return 24;
     case SF_FORMAT_PCM_32:
-    case SF_FORMAT_ALAC_32: return 32;
-    case SF_FORMAT_FLOAT: return -32;
-    case SF_FORMAT_DOUBLE: return -64;
-    default: return 0;
+    case SF_FORMAT_ALAC_32:
+      return 32;
+    case SF_FORMAT_FLOAT:
+      return -32;
+    case SF_FORMAT_DOUBLE:
+      return -64;
+    default:
+      return 0;
   }
 }
 
@@ -123,8 +130,8 @@ inline std::size_t read_frames(SNDFILE* file, const SF_INFO& info, std::vector<s
   const auto promised = static_cast<std::size_t>(info.frames);
   if (frames == 0) return failure{path + ": holds no samples that can be read"};
   if (frames < promised && info.frames != SF_COUNT_MAX)
-    return failure{path + ": truncated or damaged: " + std::to_string(promised) + " frames promised, " +
-                   std::to_string(frames) + " could be read"};
+    return failure{path + ": truncated or damaged: " + std::to_string(promised) + " frames promised, " + std::to_string(frames) +
+                   " could be read"};
   return out;
 }
 

@@ -99,10 +99,14 @@ private:
     const std::size_t room = static_cast<std::size_t>(n) + 1;  // a measured plan writes to its arrays
     const buffer in{library::allocate(room), library::release}, out{library::allocate(room), library::release};
     switch (what) {
-      case kind::complex_forward: return library::plan_complex(n, in.get(), out.get(), FFTW_FORWARD, flags);
-      case kind::complex_inverse: return library::plan_complex(n, in.get(), out.get(), FFTW_BACKWARD, flags);
-      case kind::real_forward: return library::plan_forward(n, reinterpret_cast<T*>(in.get()), out.get(), flags);
-      default: return library::plan_inverse(n, in.get(), reinterpret_cast<T*>(out.get()), flags);
+      case kind::complex_forward:
+        return library::plan_complex(n, in.get(), out.get(), FFTW_FORWARD, flags);
+      case kind::complex_inverse:
+        return library::plan_complex(n, in.get(), out.get(), FFTW_BACKWARD, flags);
+      case kind::real_forward:
+        return library::plan_forward(n, reinterpret_cast<T*>(in.get()), out.get(), flags);
+      default:
+        return library::plan_inverse(n, in.get(), reinterpret_cast<T*>(out.get()), flags);
     }
   }
 
@@ -116,7 +120,9 @@ public:
   using complex_type = std::complex<T>;
 
   explicit fftw_fft(std::size_t n)
-      : size_{n}, forward_{transform::get(n, transform::kind::real_forward, Effort)}, inverse_{transform::get(n, transform::kind::real_inverse, Effort)} {}
+      : size_{n}, forward_{transform::get(n, transform::kind::real_forward, Effort)}, inverse_{transform::get(
+                                                                                          n, transform::kind::real_inverse,
+                                                                                          Effort)} {}
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   void forward(const T* in, complex_type* out) noexcept {
@@ -140,9 +146,9 @@ public:
   using complex_type = std::complex<T>;
 
   explicit fftw_fft(std::size_t n)
-      : size_{n},
-        forward_{transform::get(n, transform::kind::complex_forward, Effort)},
-        inverse_{transform::get(n, transform::kind::complex_inverse, Effort)} {}
+      : size_{n}, forward_{transform::get(n, transform::kind::complex_forward, Effort)}, inverse_{transform::get(
+                                                                                             n, transform::kind::complex_inverse,
+                                                                                             Effort)} {}
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   void forward(const complex_type* in, complex_type* out) noexcept {

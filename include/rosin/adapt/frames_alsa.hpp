@@ -41,11 +41,16 @@ struct close_alsa {
   };
   const auto left_aligned = [](std::uint32_t bits) { return static_cast<double>(static_cast<std::int32_t>(bits)) * 0x1p-31; };
   switch (format) {
-    case SND_PCM_FORMAT_S16_LE: return left_aligned(number(2) << 16U);
-    case SND_PCM_FORMAT_S24_3LE: return left_aligned(number(3) << 8U);
-    case SND_PCM_FORMAT_S24_LE: return left_aligned(number(4) << 8U);
-    case SND_PCM_FORMAT_S32_LE: return left_aligned(number(4));
-    default: break;
+    case SND_PCM_FORMAT_S16_LE:
+      return left_aligned(number(2) << 16U);
+    case SND_PCM_FORMAT_S24_3LE:
+      return left_aligned(number(3) << 8U);
+    case SND_PCM_FORMAT_S24_LE:
+      return left_aligned(number(4) << 8U);
+    case SND_PCM_FORMAT_S32_LE:
+      return left_aligned(number(4));
+    default:
+      break;
   }
   const std::uint32_t bits = number(4);
   float value = 0;
@@ -89,9 +94,14 @@ public:
   }
 
 private:
-  alsa_source(snd_pcm_t* pcm, std::string device, const frame_format& format) : pcm_{pcm}, device_{std::move(device)}, format_{format} { format_.live = true; }
+  alsa_source(snd_pcm_t* pcm, std::string device, const frame_format& format)
+      : pcm_{pcm}, device_{std::move(device)}, format_{format} {
+    format_.live = true;
+  }
 
-  [[nodiscard]] failure failed(const std::string& what, int error) const { return failure{"alsa " + device_ + ": " + what + ": " + snd_strerror(error)}; }
+  [[nodiscard]] failure failed(const std::string& what, int error) const {
+    return failure{"alsa " + device_ + ": " + what + ": " + snd_strerror(error)};
+  }
 
   [[nodiscard]] std::optional<failure> configure() {
     snd_pcm_hw_params_t* hw = nullptr;
@@ -99,14 +109,18 @@ private:
     snd_pcm_t* pcm = pcm_.get();
     if (const int error = snd_pcm_hw_params_any(pcm, hw); error < 0) return failed("has no configuration", error);
     snd_pcm_hw_params_set_rate_resample(pcm, hw, 0);
-    if (const int error = snd_pcm_hw_params_set_access(pcm, hw, SND_PCM_ACCESS_RW_INTERLEAVED); error < 0) return failed("interleaved frames", error);
+    if (const int error = snd_pcm_hw_params_set_access(pcm, hw, SND_PCM_ACCESS_RW_INTERLEAVED); error < 0)
+      return failed("interleaved frames", error);
     if (const int error = snd_pcm_hw_params_set_channels(pcm, hw, static_cast<unsigned>(format_.channels)); error < 0)
       return failed(std::to_string(format_.channels) + " channels", error);
     const auto rate = static_cast<unsigned>(std::lround(format_.sample_rate_Hz));
-    if (const int error = snd_pcm_hw_params_set_rate(pcm, hw, rate, 0); error < 0) return failed(std::to_string(rate) + " Hz", error);
+    if (const int error = snd_pcm_hw_params_set_rate(pcm, hw, rate, 0); error < 0)
+      return failed(std::to_string(rate) + " Hz", error);
     const auto formats = detail::alsa_formats(format_);
-    const auto one = std::find_if(formats.begin(), formats.end(), [&](auto f) { return snd_pcm_hw_params_set_format(pcm, hw, f) == 0; });
-    if (one == formats.end()) return failed(std::to_string(format_.bits) + (format_.float_format ? " bits, floating point" : " bits"), -EINVAL);
+    const auto one =
+        std::find_if(formats.begin(), formats.end(), [&](auto f) { return snd_pcm_hw_params_set_format(pcm, hw, f) == 0; });
+    if (one == formats.end())
+      return failed(std::to_string(format_.bits) + (format_.float_format ? " bits, floating point" : " bits"), -EINVAL);
     sample_ = *one;
     stride_ = static_cast<std::size_t>(snd_pcm_format_physical_width(sample_)) / 8;
     snd_pcm_uframes_t buffer = rate / 2, period = rate / 100;

@@ -24,13 +24,16 @@ class jack_source {
 public:
   /// ports: "system:capture_1", ...; an empty name leaves that channel's port free, for another program to join. Returns once
   /// frames come.
-  [[nodiscard]] static outcome<jack_source> open(const std::string& client, const std::vector<std::string>& ports, const std::string& server = {}) {
+  [[nodiscard]] static outcome<jack_source> open(const std::string& client, const std::vector<std::string>& ports,
+                                                 const std::string& server = {}) {
     jack_set_error_function([](const char*) {});
     jack_set_info_function([](const char*) {});
     jack_status_t status{};
     auto options = static_cast<jack_options_t>(JackNoStartServer | (server.empty() ? JackNullOption : JackServerName));
-    jack_client_t* raw = server.empty() ? jack_client_open(client.c_str(), options, &status) : jack_client_open(client.c_str(), options, &status, server.c_str());
-    if (raw == nullptr) return failure{"jack: there is no server that takes us (status " + std::to_string(static_cast<int>(status)) + ")"};
+    jack_client_t* raw = server.empty() ? jack_client_open(client.c_str(), options, &status)
+                                        : jack_client_open(client.c_str(), options, &status, server.c_str());
+    if (raw == nullptr)
+      return failure{"jack: there is no server that takes us (status " + std::to_string(static_cast<int>(status)) + ")"};
     jack_source out;
     out.state_ = std::make_unique<shared>(ports.size(), static_cast<std::size_t>(jack_get_sample_rate(raw)));
     out.client_.reset(raw);
@@ -49,7 +52,8 @@ public:
       const bool gone = state_->gone.load(std::memory_order_acquire);
       const std::size_t most = std::min(interleaved.size(), block.size()) / width * width;
       const auto got = state_->ring.read(std::span{block}.first(most));
-      std::transform(block.begin(), block.begin() + static_cast<std::ptrdiff_t>(got.frames * width), interleaved.begin(), [](float x) { return static_cast<double>(x); });
+      std::transform(block.begin(), block.begin() + static_cast<std::ptrdiff_t>(got.frames * width), interleaved.begin(),
+                     [](float x) { return static_cast<double>(x); });
       if (got.frames > 0) return {got.frames, got.lost, false, got.lost > 0 ? "jack: overrun" : ""};
       if (gone) {  // jackd ends by SIGPIPE, and stays in JACK's list of servers, where a client goes before it has
         std::this_thread::sleep_for(std::chrono::milliseconds{300});
@@ -85,7 +89,8 @@ private:
     if (s.running.load(std::memory_order_relaxed) && now != s.expected) s.ring.lost(now - s.expected);
     s.running.store(true, std::memory_order_release);
     s.expected = now + frames;
-    for (std::size_t c = 0; c < s.ports.size(); ++c) s.buffers[c] = static_cast<const float*>(jack_port_get_buffer(s.ports[c], frames));
+    for (std::size_t c = 0; c < s.ports.size(); ++c)
+      s.buffers[c] = static_cast<const float*>(jack_port_get_buffer(s.ports[c], frames));
     s.ring.write(frames, [&](std::size_t i, std::size_t c) { return s.buffers[c][i]; });
     return 0;
   }
@@ -94,9 +99,11 @@ private:
     jack_client_t* client = client_.get();
     state_->client = client;
     jack_set_process_callback(client, &jack_source::process, state_.get());
-    jack_on_shutdown(client, [](void* s) { static_cast<shared*>(s)->gone.store(true, std::memory_order_release); }, state_.get());
+    jack_on_shutdown(
+        client, [](void* s) { static_cast<shared*>(s)->gone.store(true, std::memory_order_release); }, state_.get());
     for (std::size_t c = 0; c < from.size(); ++c) {
-      state_->ports[c] = jack_port_register(client, ("in_" + std::to_string(c + 1)).c_str(), JACK_DEFAULT_AUDIO_TYPE, JackPortIsInput, 0);
+      state_->ports[c] =
+          jack_port_register(client, ("in_" + std::to_string(c + 1)).c_str(), JACK_DEFAULT_AUDIO_TYPE, JackPortIsInput, 0);
       if (state_->ports[c] == nullptr) return failure{"jack: no more ports"};
     }
     if (jack_activate(client) != 0) return failure{"jack: the client cannot be started"};
@@ -110,7 +117,8 @@ private:
   /// What is played once a source is open is in it whole. A server that stands still is met by read's patience.
   void wait_for_frames() const {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{2};
-    while (!state_->running.load(std::memory_order_acquire) && !state_->gone.load(std::memory_order_acquire) && std::chrono::steady_clock::now() < deadline)
+    while (!state_->running.load(std::memory_order_acquire) && !state_->gone.load(std::memory_order_acquire) &&
+           std::chrono::steady_clock::now() < deadline)
       std::this_thread::sleep_for(std::chrono::milliseconds{1});
   }
 

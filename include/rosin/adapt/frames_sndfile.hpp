@@ -54,7 +54,8 @@ public:
     if (const int error = sf_error(file_.get()); error != SF_ERR_NO_ERROR) out.problem = name_ + ": " + sf_error_number(error);
     given_ += got;
     if (out.ended && fd_ < 0 && given_ < promised_)
-      out.problem = name_ + ": damaged: " + std::to_string(promised_) + " frames promised, " + std::to_string(given_) + " could be read";
+      out.problem =
+          name_ + ": damaged: " + std::to_string(promised_) + " frames promised, " + std::to_string(given_) + " could be read";
     return out;
   }
 

@@ -19,8 +19,8 @@ namespace rosin {
 
 struct riff_layout {
   std::uint64_t file_bytes = 0;
-  std::optional<std::uint64_t> data_offset;   ///< where the samples begin
-  std::optional<std::uint64_t> data_promised; ///< bytes of samples by the header; empty: a stream of unknown length
+  std::optional<std::uint64_t> data_offset;    ///< where the samples begin
+  std::optional<std::uint64_t> data_promised;  ///< bytes of samples by the header; empty: a stream of unknown length
   bool format_chunk = false;
 
   [[nodiscard]] std::uint64_t data_present() const noexcept {

@@ -24,15 +24,17 @@ inline void check_format(const rig_folder& folder, const take& t, const audio_fo
   const std::string file = folder.rig.path_of(t.file);
   for (const auto& c : folder.rig.channels)
     if (c.index >= format.channels)
-      log.add(t.line, place, file + ": has " + std::to_string(format.channels) + " channel(s), but channels." + c.name +
-                                 ".index is " + std::to_string(c.index));
+      log.add(t.line, place,
+              file + ": has " + std::to_string(format.channels) + " channel(s), but channels." + c.name + ".index is " +
+                  std::to_string(c.index));
   const int first = folder.formats.front().channels;
   if (first > 0 && first != format.channels)
-    log.add(t.line, place, file + ": has " + std::to_string(format.channels) + " channel(s), the first take has " +
-                               std::to_string(first));
+    log.add(t.line, place,
+            file + ": has " + std::to_string(format.channels) + " channel(s), the first take has " + std::to_string(first));
   if (folder.rig.string.fundamental_Hz * 2 >= format.sample_rate_Hz)
-    log.add(t.line, place, file + ": a sample rate of " + value_range::number(format.sample_rate_Hz) +
-                               " Hz cannot hold the fundamental of " + value_range::number(folder.rig.string.fundamental_Hz) + " Hz");
+    log.add(t.line, place,
+            file + ": a sample rate of " + value_range::number(format.sample_rate_Hz) + " Hz cannot hold the fundamental of " +
+                value_range::number(folder.rig.string.fundamental_Hz) + " Hz");
 }
 
 inline void note_unnamed_channels(rig_folder& folder) {

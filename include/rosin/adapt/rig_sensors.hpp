@@ -14,12 +14,17 @@ namespace rosin::detail {
 inline std::string_view scale_key(quantity what) noexcept {
   switch (what) {
     case quantity::termination_force:
-    case quantity::normal_force: return "newtons_per_full_scale";
+    case quantity::normal_force:
+      return "newtons_per_full_scale";
     case quantity::string_velocity:
-    case quantity::bow_speed: return "metres_per_second_per_full_scale";
-    case quantity::string_displacement: return "metres_per_full_scale";
-    case quantity::sound: return "pascals_per_full_scale";
-    case quantity::unused: break;
+    case quantity::bow_speed:
+      return "metres_per_second_per_full_scale";
+    case quantity::string_displacement:
+      return "metres_per_full_scale";
+    case quantity::sound:
+      return "pascals_per_full_scale";
+    case quantity::unused:
+      break;
   }
   return {};
 }
@@ -39,8 +44,8 @@ inline quantity read_quantity(toml_fields& fields, const std::string& name) {
 inline void read_scale(toml_fields& fields, sensor_channel& c) {
   const std::string_view own = scale_key(c.quantity);
   if (c.quantity == quantity::termination_force && !fields.has(own)) fields.missing(own);
-  for (const std::string_view key : {"newtons_per_full_scale", "metres_per_second_per_full_scale", "metres_per_full_scale",
-                                     "pascals_per_full_scale"}) {
+  for (const std::string_view key :
+       {"newtons_per_full_scale", "metres_per_second_per_full_scale", "metres_per_full_scale", "pascals_per_full_scale"}) {
     if (key == own) c.per_full_scale = fields.number(key, up_to(1e9));
     else if (fields.has(key)) fields.refuse(key, "is no scale of the quantity " + name_of(c.quantity));
   }

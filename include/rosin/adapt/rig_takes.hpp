@@ -49,13 +49,15 @@ inline void read_bow(toml_fields& fields, take& t, bool forces) {
   t.normal_force_profile_N = read_profile(fields, "normal_force_profile_N", zero_to(1e4));
   t.position_profile = read_profile(fields, "position_profile", inside_unit);
   for (const char* key : {"contact_position", "position_unknown"})
-    if (!t.position_profile.empty() && fields.has(key)) fields.refuse(key, "contradicts position_profile, which stands beside it");
+    if (!t.position_profile.empty() && fields.has(key))
+      fields.refuse(key, "contradicts position_profile, which stands beside it");
   for (const char* key : {"force_N", "force_tolerance"}) fields.refuse(key, "does not belong to a take of kind bow");
 }
 
 inline void read_quiet(toml_fields& fields) {
-  for (const char* key : {"force_N", "force_tolerance", "speed_m_s", "normal_force_N", "speed_profile_m_s",
-                          "normal_force_profile_N", "position_profile", "contact_position", "position_unknown", "strength", "start_s"})
+  for (const char* key :
+       {"force_N", "force_tolerance", "speed_m_s", "normal_force_N", "speed_profile_m_s", "normal_force_profile_N",
+        "position_profile", "contact_position", "position_unknown", "strength", "start_s"})
     fields.refuse(key, "does not belong to a take of kind quiet");
 }
 

@@ -56,11 +56,12 @@ inline void check_string(toml_fields fields, const rig& r, bool sound) {
       if (!fields.has(key)) fields.missing(key);
   if (!sound || !s.impedance_Ns_m || !s.tension_N || !s.length_m) return;
   const double expected = *s.tension_N / (2 * *s.length_m * s.fundamental_Hz);
-  const double limit = s.tension_tolerance.value_or(0.02) + s.fundamental_tolerance.value_or(0.003) +
-                       s.impedance_tolerance.value_or(0.01);
+  const double limit =
+      s.tension_tolerance.value_or(0.02) + s.fundamental_tolerance.value_or(0.003) + s.impedance_tolerance.value_or(0.01);
   if (std::abs(*s.impedance_Ns_m / expected - 1) > limit)
-    fields.refuse("impedance_Ns_m", "is " + value_range::number(*s.impedance_Ns_m) + ", but tension / (2 length fundamental) is " +
-                                        value_range::number(expected) + "; one of the four is wrong");
+    fields.refuse("impedance_Ns_m", "is " + value_range::number(*s.impedance_Ns_m) +
+                                        ", but tension / (2 length fundamental) is " + value_range::number(expected) +
+                                        "; one of the four is wrong");
 }
 
 inline void read_contact(toml_fields fields, rig& r) {

@@ -82,8 +82,8 @@ public:
     const auto* value = node->as_integer();
     if (value == nullptr) return wrong_type(*node, path(key), "a whole number"), std::nullopt;
     if (value->get() >= low && value->get() <= high) return value->get();
-    problem(*node, path(key), "must be " + std::to_string(low) + " ... " + std::to_string(high) + ", is " +
-                                  std::to_string(value->get()));
+    problem(*node, path(key),
+            "must be " + std::to_string(low) + " ... " + std::to_string(high) + ", is " + std::to_string(value->get()));
     return std::nullopt;
   }
   std::optional<std::string> text(std::string_view key) {
@@ -165,9 +165,7 @@ public:
         problem(node, path(key.str()), "unknown key" + suggestion(key.str(), known_));
   }
 
-  [[nodiscard]] static int line_of(const toml::node& node) noexcept {
-    return static_cast<int>(node.source().begin.line);
-  }
+  [[nodiscard]] static int line_of(const toml::node& node) noexcept { return static_cast<int>(node.source().begin.line); }
 
 private:
   const toml::table* table_;

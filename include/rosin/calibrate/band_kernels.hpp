@@ -18,7 +18,8 @@ public:
   [[nodiscard]] const fir& of(const band& limits, double rate_Hz) const {
     for (const entry& e : kept_)
       if (e.limits.pass_Hz == limits.pass_Hz && e.limits.stop_Hz == limits.stop_Hz && e.rate_Hz == rate_Hz) return e.kernel;
-    return kept_.emplace_back(entry{limits, rate_Hz, shortest_fir([](double) { return 1.0; }, limits, rate_Hz, -400, 400, 1e-5)}).kernel;
+    return kept_.emplace_back(entry{limits, rate_Hz, shortest_fir([](double) { return 1.0; }, limits, rate_Hz, -400, 400, 1e-5)})
+        .kernel;
   }
 
 private:

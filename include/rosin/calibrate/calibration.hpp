@@ -32,9 +32,10 @@ struct calibration {
   std::array<double, 2> gain{1, 1};       ///< recorded / true, near and far
   std::array<double, 2> noise_N{};        ///< white noise of the sensors, rms up to half the sampling rate
   std::array<double, 2> ac_coupled_Hz{};  ///< 0: DC coupled
-  waveform_matrix covariance = waveform_matrix::Zero();  ///< of delays (s), epsilon (s^2), 1/Q, loss (s), ln(gain near / gain far)
-  double scale_relative_sd = 0;           ///< of the common factor of both gains
-  double impedance_relative_sd = 0;       ///< scales the velocity, besides
+  /// of delays (s), epsilon (s^2), 1/Q, loss (s), ln(gain near / gain far)
+  waveform_matrix covariance = waveform_matrix::Zero();
+  double scale_relative_sd = 0;      ///< of the common factor of both gains
+  double impedance_relative_sd = 0;  ///< scales the velocity, besides
 
   /// The same with the waveform parameters moved by `by`.
   [[nodiscard]] calibration moved(const waveform_vector& by) const {

@@ -5,8 +5,8 @@
 // are all that a model has to supply; whatever the physics (stiffness, loss, ends, sensors), the fit below is the same.
 //
 // Two things make the fit fast. The lines are advanced by one complex product a sample, in blocks that stay in the cache.
-// And the normal matrix of all lines and their derivatives is known in closed form: sums of t^a exp(p t) over n equidistant t = k h,
-// with z = exp(p h)
+// And the normal matrix of all lines and their derivatives is known in closed form: sums of t^a exp(p t) over n equidistant t = k
+// h, with z = exp(p h)
 //
 //     (1 - z) A_0 = 1 - z^n,   (1 - z) A_1 = z A_0 - n z^n,   (1 - z) A_2 = z (2 A_1 + A_0) - n^2 z^n,      A_a = sum k^a z^k,
 //
@@ -36,7 +36,8 @@ struct damped_line {
 namespace detail {
 
 /// By doubling: cannot cancel however small p is.
-[[nodiscard]] inline std::array<std::complex<double>, 3> doubled_sums(std::complex<double> one_step, double step_s, std::size_t count) {
+[[nodiscard]] inline std::array<std::complex<double>, 3> doubled_sums(std::complex<double> one_step, double step_s,
+                                                                      std::size_t count) {
   std::array<std::complex<double>, 3> sum{};  // over `done` samples
   std::complex<double> z = 1;                 // exp(p h done)
   double t = 0;                               // h done
@@ -65,7 +66,8 @@ struct line_steps {
   std::complex<double> one, all;
 
   line_steps(std::complex<double> one_step, std::complex<double> all_steps) : one{one_step}, all{all_steps} {}
-  line_steps(std::complex<double> p, double step_s, std::size_t count) : one{std::exp(p * step_s)}, all{std::exp(p * step_s * static_cast<double>(count))} {}
+  line_steps(std::complex<double> p, double step_s, std::size_t count)
+      : one{std::exp(p * step_s)}, all{std::exp(p * step_s * static_cast<double>(count))} {}
 };
 [[nodiscard]] inline line_steps operator*(const line_steps& a, const line_steps& b) { return {a.one * b.one, a.all * b.all}; }
 [[nodiscard]] inline line_steps conj(const line_steps& a) { return {std::conj(a.one), std::conj(a.all)}; }
@@ -77,7 +79,8 @@ struct line_steps {
   const std::complex<double> less = 1.0 - p.one;
   if (!(std::norm(less) * n * n > enough * enough)) return detail::doubled_sums(p.one, step_s, count);
   const std::complex<double> over = plain::reciprocal(less), last = n * p.all;
-  const std::complex<double> a0 = (1.0 - p.all) * over, a1 = (p.one * a0 - last) * over, a2 = (p.one * (2.0 * a1 + a0) - n * last) * over;
+  const std::complex<double> a0 = (1.0 - p.all) * over, a1 = (p.one * a0 - last) * over,
+                             a2 = (p.one * (2.0 * a1 + a0) - n * last) * over;
   return {a0, step_s * a1, step_s * step_s * a2};
 }
 [[nodiscard]] inline std::array<std::complex<double>, 3> power_sums(std::complex<double> p, double step_s, std::size_t count) {
@@ -113,7 +116,8 @@ class line_runner {
 public:
   static constexpr std::size_t block = 256;
 
-  line_runner(const std::vector<damped_line>& lines, double step_s) : step_s_{step_s}, table_(block, 2 * lines.size()), jump_(static_cast<Eigen::Index>(lines.size())) {
+  line_runner(const std::vector<damped_line>& lines, double step_s)
+      : step_s_{step_s}, table_(block, 2 * lines.size()), jump_(static_cast<Eigen::Index>(lines.size())) {
     const auto N = static_cast<Eigen::Index>(lines.size());
     for (Eigen::Index n = 0; n < N; ++n) {
       const std::complex<double> pole = lines[static_cast<std::size_t>(n)].pole;
@@ -149,17 +153,18 @@ public:
     const Eigen::Index N = jump_.size(), rows = table_.rows();
     const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(rows, 0.0, step_s_ * static_cast<double>(rows - 1));
     std::vector<Eigen::MatrixXd> out(static_cast<std::size_t>(signals.cols()), Eigen::MatrixXd::Zero(N, 4));
-    in_chunks(static_cast<std::size_t>(signals.rows()), [&](Eigen::Index begin, Eigen::Index blocks, const Eigen::MatrixXcd& start) {
-      const Eigen::Index length = std::min(blocks * rows, signals.rows() - begin);
-      Eigen::MatrixXd cut = Eigen::MatrixXd::Zero(rows, 2 * blocks);
-      for (Eigen::Index c = 0; c < signals.cols(); ++c) {
-        Eigen::Map<Eigen::VectorXd>(cut.data(), blocks * rows).head(length) = signals.col(c).segment(begin, length);
-        Eigen::Map<Eigen::VectorXd>(cut.data(), blocks * rows).tail(blocks * rows - length).setZero();
-        cut.rightCols(blocks) = ramp.asDiagonal() * cut.leftCols(blocks);
-        const Eigen::MatrixXd onto = table_.transpose() * cut;
-        add_products(onto, start, step_s_ * static_cast<double>(begin), out[static_cast<std::size_t>(c)]);
-      }
-    });
+    in_chunks(static_cast<std::size_t>(signals.rows()),
+              [&](Eigen::Index begin, Eigen::Index blocks, const Eigen::MatrixXcd& start) {
+                const Eigen::Index length = std::min(blocks * rows, signals.rows() - begin);
+                Eigen::MatrixXd cut = Eigen::MatrixXd::Zero(rows, 2 * blocks);
+                for (Eigen::Index c = 0; c < signals.cols(); ++c) {
+                  Eigen::Map<Eigen::VectorXd>(cut.data(), blocks * rows).head(length) = signals.col(c).segment(begin, length);
+                  Eigen::Map<Eigen::VectorXd>(cut.data(), blocks * rows).tail(blocks * rows - length).setZero();
+                  cut.rightCols(blocks) = ramp.asDiagonal() * cut.leftCols(blocks);
+                  const Eigen::MatrixXd onto = table_.transpose() * cut;
+                  add_products(onto, start, step_s_ * static_cast<double>(begin), out[static_cast<std::size_t>(c)]);
+                }
+              });
     return out;
   }
 
@@ -184,7 +189,8 @@ private:
       const double t = begin_s + step_s_ * static_cast<double>(b * table_.rows());
       for (Eigen::Index n = 0; n < N; ++n) {
         const std::complex<double> plain = start(n, b) * std::complex<double>(onto(n, b), onto(N + n, b));
-        const std::complex<double> ramped = t * plain + start(n, b) * std::complex<double>(onto(n, blocks + b), onto(N + n, blocks + b));
+        const std::complex<double> ramped =
+            t * plain + start(n, b) * std::complex<double>(onto(n, blocks + b), onto(N + n, blocks + b));
         sum(n, 0) += plain.real(), sum(n, 1) += plain.imag(), sum(n, 2) += ramped.real(), sum(n, 3) += ramped.imag();
       }
     }

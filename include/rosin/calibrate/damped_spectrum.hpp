@@ -5,9 +5,9 @@
 //
 //     X(s) = h sum_n x[n] exp(-s n h),
 //
-// by one transform of the exponentially weighted record. What happens later than a few 1/sigma hardly counts, so the record needs no end and
-// sharp resonances are seen as softly as wanted: a fit begins with a large sigma, where a string is two or three echoes and the pitch cannot
-// be mistaken, and follows it down to the whole record.
+// by one transform of the exponentially weighted record. What happens later than a few 1/sigma hardly counts, so the record needs
+// no end and sharp resonances are seen as softly as wanted: a fit begins with a large sigma, where a string is two or three
+// echoes and the pitch cannot be mistaken, and follows it down to the whole record.
 //
 #pragma once
 
@@ -24,7 +24,7 @@ namespace rosin {
 struct damped_line_of_frequencies {
   double rate_Hz = 0;
   double sigma_per_s = 0;
-  std::size_t samples = 0;  ///< of the record that are used
+  std::size_t samples = 0;          ///< of the record that are used
   std::size_t first = 1, last = 0;  ///< bins
 
   /// `highest_Hz`: of the bins. What the weight leaves of the record's end is exp(-12) of it.
@@ -44,7 +44,8 @@ struct damped_line_of_frequencies {
 };
 
 /// X along the line. Precondition: x holds as many samples as the line uses.
-[[nodiscard]] inline std::vector<std::complex<double>> damped_spectrum(const damped_line_of_frequencies& line, std::span<const double> x) {
+[[nodiscard]] inline std::vector<std::complex<double>> damped_spectrum(const damped_line_of_frequencies& line,
+                                                                       std::span<const double> x) {
   std::vector<double> weighted(line.samples);
   const double step = std::exp(-line.sigma_per_s / line.rate_Hz);
   double weight = 1 / line.rate_Hz;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Plucks and modes of the ends on their way to the least squares (end_problem.hpp) at one length of the record: Levenberg and
-// Marquardt, with weights from what lies between the partials and with what is known beforehand. What the first echoes cannot tell is
-// kept by wide priors: 1/Q within 3e-3, internal loss within 3e-7 s, a mode's Q within a factor of 4.5 of 15.
+// Marquardt, with weights from what lies between the partials and with what is known beforehand. What the first echoes cannot
+// tell is kept by wide priors: 1/Q within 3e-3, internal loss within 3e-7 s, a mode's Q within a factor of 4.5 of 15.
 //
 #pragma once
 
@@ -23,9 +23,10 @@ public:
     end_equations now;
   };
 
-  end_descent(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options, const std::array<known_admittance, 2>& known,
-              const pluck_start& start)
-      : takes_{takes}, guess_{guess}, model_{pluck_layout(takes, options), guess.ac_coupled_Hz, known, {}}, limits_{options.limits_for(takes.front().rate_Hz)},
+  end_descent(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
+              const std::array<known_admittance, 2>& known, const pluck_start& start)
+      : takes_{takes}, guess_{guess}, model_{pluck_layout(takes, options), guess.ac_coupled_Hz, known, {}},
+        limits_{options.limits_for(takes.front().rate_Hz)},
         v_{model_.layout.initial(takes, guess, start.fundamental_Hz, start.release_s, start.position)}, start_{v_} {
     for (const double t0 : start.release_s) begin_s_.push_back(std::max(0.0, t0 - 0.002));
     set_offsets();
@@ -44,7 +45,8 @@ public:
   /// How long every take rings on after its release.
   [[nodiscard]] double shortest_s() const {
     double s = 1e9;
-    for (std::size_t t = 0; t < takes_.size(); ++t) s = std::min(s, static_cast<double>(takes_[t].force_N[0].size()) / takes_[t].rate_Hz - begin_s_[t]);
+    for (std::size_t t = 0; t < takes_.size(); ++t)
+      s = std::min(s, static_cast<double>(takes_[t].force_N[0].size()) / takes_[t].rate_Hz - begin_s_[t]);
     return s;
   }
 
@@ -63,7 +65,8 @@ public:
   void insert(const mode_candidate& c) {
     model_.mode_end.push_back(c.end);
     v_.conservativeResize(model_.size());
-    v_.tail<end_model::per_mode>() << std::log(c.mode.frequency_Hz), std::log(c.mode.q), std::log(std::clamp(c.mode.per_mass_per_s, 1e-6, 1e5));
+    v_.tail<end_model::per_mode>() << std::log(c.mode.frequency_Hz), std::log(c.mode.q),
+        std::log(std::clamp(c.mode.per_mass_per_s, 1e-6, 1e5));
   }
   void erase(std::size_t mode) {
     const Eigen::Index at = model_.mode_at(mode), rest = v_.size() - at - end_model::per_mode;
@@ -117,7 +120,9 @@ public:
   /// What is known beforehand, and what keeps a parameter that the first echoes cannot tell from running away.
   [[nodiscard]] pluck_layout::knowledge prior(Eigen::Index p) const {
     using layout = pluck_layout;
-    if (p >= model_.layout.size()) return (p - model_.layout.size()) % end_model::per_mode == 1 ? layout::knowledge{std::log(15.0), 1.5} : layout::knowledge{0, 0};
+    if (p >= model_.layout.size())
+      return (p - model_.layout.size()) % end_model::per_mode == 1 ? layout::knowledge{std::log(15.0), 1.5}
+                                                                   : layout::knowledge{0, 0};
     if (p == layout::inverse_quality) return {1 / guess_.quality, 3e-3};
     if (p == layout::internal_loss) return {0, 3e-7};
     if (p == layout::inharmonicity && guess_.inharmonicity > 0) return {guess_.inharmonicity, guess_.inharmonicity};
@@ -134,7 +139,8 @@ private:
         const auto count = std::max<std::size_t>(1, static_cast<std::size_t>(begin_s_[t] * takes_[t].rate_Hz));
         double mean = 0;
         for (std::size_t i = 0; i < count; ++i) mean += takes_[t].force_N[c][i] / static_cast<double>(count);
-        v_[L.at(t, pluck_layout::offset_near + static_cast<int>(c))] = mean - takes_[t].strength_N * static_forces(v_[L.position(t)])[c];
+        v_[L.at(t, pluck_layout::offset_near + static_cast<int>(c))] =
+            mean - takes_[t].strength_N * static_forces(v_[L.position(t)])[c];
       }
   }
 
@@ -149,7 +155,8 @@ private:
         const auto& line = problem_->line(t);
         const double one = 2 * line.weighted_samples() / static_cast<double>(line.samples);
         expected += one / static_cast<double>(takes_.size());
-        for (Eigen::Index i = 0; i < n; ++i) power.push_back(r.residual[i] * r.residual[i] + r.residual[n + i] * r.residual[n + i]);
+        for (Eigen::Index i = 0; i < n; ++i)
+          power.push_back(r.residual[i] * r.residual[i] + r.residual[n + i] * r.residual[n + i]);
       }
       const auto middle = power.begin() + static_cast<std::ptrdiff_t>(power.size() / 2);
       std::nth_element(power.begin(), middle, power.end());
@@ -176,7 +183,8 @@ private:
     bool ok = model_.layout.plausible(v.head(n), start_, limits_.pass_Hz);
     for (std::size_t i = 0; i < model_.mode_end.size(); ++i) {
       const admittance_mode m = model_.mode(v, i);
-      ok = ok && m.frequency_Hz > 20 && m.frequency_Hz < 1.3 * limits_.pass_Hz && m.q > 0.3 && m.q < 5000 && m.per_mass_per_s > 1e-7 && m.per_mass_per_s < 1e6;
+      ok = ok && m.frequency_Hz > 20 && m.frequency_Hz < 1.3 * limits_.pass_Hz && m.q > 0.3 && m.q < 5000 &&
+           m.per_mass_per_s > 1e-7 && m.per_mass_per_s < 1e6;
     }
     return ok;
   }

@@ -4,11 +4,11 @@
 // How the terminations give way, from plucks alone: the admittances of the ends as sums of modes, as many as the recordings ask
 // for, fitted jointly with pitch, place, stiffness, loss, gains and releases (end_problem.hpp).
 //
-// The fit begins with the first echoes, which tell one end from the other, and follows them to the whole record, which is what tells small
-// motion; at every length modes are added while one more is worth it (end_search.hpp) and taken out again where they are not. A gain in ln L
-// has to be `least_gain` times what the misfit that is left would give by chance. Errors are those of the joint fit, widened by that misfit
-// and by what conventions of damping differ in: next to a string of quality Q they move a mode's ln(Z/M) by 1/(2Q), its pitch by half of
-// that and its own loss by 1/(2Q).
+// The fit begins with the first echoes, which tell one end from the other, and follows them to the whole record, which is what
+// tells small motion; at every length modes are added while one more is worth it (end_search.hpp) and taken out again where they
+// are not. A gain in ln L has to be `least_gain` times what the misfit that is left would give by chance. Errors are those of the
+// joint fit, widened by that misfit and by what conventions of damping differ in: next to a string of quality Q they move a
+// mode's ln(Z/M) by 1/(2Q), its pitch by half of that and its own loss by 1/(2Q).
 //
 #pragma once
 
@@ -20,8 +20,8 @@ struct end_options {
   std::array<bool, 2> free_ends{true, true};  ///< which ends are fitted
   std::array<known_admittance, 2> known{};    ///< what is declared of them besides; empty: what the guess says
   std::size_t most_modes = 24;
-  double least_gain = 14;                     ///< of ln L, for a further mode: as in the search for missing physics
-  double most_residual = 0.6;                 ///< of the signal (rms); more is no string of this kind
+  double least_gain = 14;      ///< of ln L, for a further mode: as in the search for missing physics
+  double most_residual = 0.6;  ///< of the signal (rms); more is no string of this kind
 };
 
 /// One mode that was found.
@@ -33,11 +33,11 @@ struct fitted_mode {
 };
 
 struct end_fit_result {
-  pluck_fit_result plucks;            ///< value, sd and covariance of the layout's parameters
+  pluck_fit_result plucks;  ///< value, sd and covariance of the layout's parameters
   std::vector<fitted_mode> modes;
   std::array<modal_termination, 2> ends;
-  Eigen::MatrixXd covariance;         ///< of the layout's parameters, then ln f, ln q, ln(Z / M) of each mode; the last counts as
-                                      ///< unknown by a factor of e where the end is uncertain: it may be none of this end's
+  Eigen::MatrixXd covariance;  ///< of the layout's parameters, then ln f, ln q, ln(Z / M) of each mode; the last counts as
+                               ///< unknown by a factor of e where the end is uncertain: it may be none of this end's
 };
 
 namespace detail {
@@ -50,7 +50,8 @@ namespace detail {
 
 class end_fitter {
 public:
-  end_fitter(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options, const end_options& how, const pluck_start& start)
+  end_fitter(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options, const end_options& how,
+             const pluck_start& start)
       : takes_{takes}, how_{how}, d_{takes, guess, options, {known(0, guess), known(1, guess)}, start} {}
 
   /// From a rough start to the whole record.
@@ -63,7 +64,8 @@ public:
     for (const double periods : lengths) {
       d_.look(periods, d_.limits().pass_Hz, 30);
       if (periods > clear_periods && d_.misfit() < 2) continue;
-      while (d_.model().mode_end.size() < how_.most_modes && add_mode()) {}
+      while (d_.model().mode_end.size() < how_.most_modes && add_mode()) {
+      }
       remove_idle_modes();
     }
     return conclude();
@@ -80,7 +82,8 @@ private:
   /// Tries the best candidates; keeps the one that gains most, if it is worth it.
   [[nodiscard]] bool add_mode() {
     if (!how_.free_ends[0] && !how_.free_ends[1]) return false;
-    const auto all = search_modes(d_.problem(), d_.model(), d_.value(), d_.now().hessian, d_.now().gradient, how_.free_ends, std::min(100.0, 0.3 * d_.value()[0]), 0.95 * d_.limits().pass_Hz);
+    const auto all = search_modes(d_.problem(), d_.model(), d_.value(), d_.now().hessian, d_.now().gradient, how_.free_ends,
+                                  std::min(100.0, 0.3 * d_.value()[0]), 0.95 * d_.limits().pass_Hz);
     const end_descent::state before = d_.keep();
     std::optional<end_descent::state> best;
     for (const mode_candidate& c : peaks(all)) {
@@ -99,7 +102,9 @@ private:
   [[nodiscard]] static std::vector<mode_candidate> peaks(const std::vector<mode_candidate>& all) {
     std::vector<mode_candidate> out;
     for (const mode_candidate& c : all) {
-      const bool new_one = std::none_of(out.begin(), out.end(), [&](const mode_candidate& o) { return o.end == c.end && std::abs(std::log(o.mode.frequency_Hz / c.mode.frequency_Hz)) < 0.2; });
+      const bool new_one = std::none_of(out.begin(), out.end(), [&](const mode_candidate& o) {
+        return o.end == c.end && std::abs(std::log(o.mode.frequency_Hz / c.mode.frequency_Hz)) < 0.2;
+      });
       if (c.gain > 3 && new_one) out.push_back(c);
       if (out.size() == 2 || c.gain < 3) break;
     }
@@ -122,7 +127,8 @@ private:
   [[nodiscard]] bool end_uncertain(std::size_t mode) {
     if (!how_.free_ends[0] || !how_.free_ends[1]) return false;
     const Eigen::Index at = d_.model().mode_at(mode) + 2;
-    if (invert_free(d_.model(), d_.now().hessian)(at, at) < 1e-5 / d_.misfit()) return false;  // so well known that the ends' likeness cannot hide it
+    if (invert_free(d_.model(), d_.now().hessian)(at, at) < 1e-5 / d_.misfit())
+      return false;  // so well known that the ends' likeness cannot hide it
     const end_descent::state before = d_.keep();
     d_.swap_end(mode);
     d_.settle(6);
@@ -135,7 +141,8 @@ private:
     double left = 0, all = 0;
     for (std::size_t c = 0; c < 2; ++c) {
       const auto r = d_.problem().at(d_.model(), d_.value(), take, c);
-      const double weight = 2.0 / static_cast<double>(d_.problem().line(take).samples) * std::pow(d_.problem().line(take).rate_Hz / d_.problem().noise()[c], 2);
+      const double weight = 2.0 / static_cast<double>(d_.problem().line(take).samples) *
+                            std::pow(d_.problem().line(take).rate_Hz / d_.problem().noise()[c], 2);
       left += r.residual.squaredNorm(), all += weight * r.model_power.sum();
     }
     return std::sqrt(left / std::max(1e-300, all));
@@ -164,7 +171,8 @@ private:
     pluck_fit_result& f = out.plucks;
     f.layout = d_.model().layout, f.value = d_.value().head(n), f.covariance = out.covariance.topLeftCorner(n, n);
     f.sd = f.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-    f.noise_N = d_.noise(), f.misfit = inflation, f.limits = d_.limits(), f.iterations = d_.iterations(), f.converged = d_.converged();
+    f.noise_N = d_.noise(), f.misfit = inflation, f.limits = d_.limits(), f.iterations = d_.iterations(),
+    f.converged = d_.converged();
     f.horizon_periods = 1e9;
     for (std::size_t t = 0; t < takes_.size(); ++t) f.residual_ratio.push_back(residual_ratio(t));
     f.unidentified = unidentified(d_.now().hessian.topLeftCorner(n, n) - known.topLeftCorner(n, n), d_.model().layout);
@@ -177,7 +185,9 @@ private:
       if (uncertain) out.covariance(at + 2, at + 2) += 1;
       out.ends[d_.model().mode_end[i]].modes.push_back(m);
     }
-    if (!out.plucks.value.allFinite() || worst(f) > how_.most_residual) return failure{takes_.front().name + ": the plucks do not ring as the declared string should, nor " + (how_.free_ends[0] || how_.free_ends[1] ? "with ends that give way" : "between the declared ends")};
+    if (!out.plucks.value.allFinite() || worst(f) > how_.most_residual)
+      return failure{takes_.front().name + ": the plucks do not ring as the declared string should, nor " +
+                     (how_.free_ends[0] || how_.free_ends[1] ? "with ends that give way" : "between the declared ends")};
     return out;
   }
 
@@ -189,8 +199,8 @@ private:
 }  // namespace detail
 
 /// Fits plucks and ends together. Fails as fit_plucks does.
-[[nodiscard]] inline outcome<end_fit_result> fit_ends(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options = {},
-                                                      const end_options& how = {}) {
+[[nodiscard]] inline outcome<end_fit_result> fit_ends(const std::vector<pluck_take>& takes, const pluck_guess& guess,
+                                                      const pluck_options& options = {}, const end_options& how = {}) {
   const outcome<pluck_start> start = find_start(takes, guess);
   if (!start) return failure{start.error()};
   return detail::end_fitter(takes, guess, options, how, *start).run();

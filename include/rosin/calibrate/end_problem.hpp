@@ -1,13 +1,14 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Plucks of a string whose ends give way, as a least-squares problem along a line of complex frequencies (damped_spectrum.hpp). A pluck
-// of F newtons that is let go at t0 leaves in channel j
+// Plucks of a string whose ends give way, as a least-squares problem along a line of complex frequencies (damped_spectrum.hpp). A
+// pluck of F newtons that is let go at t0 leaves in channel j
 //
 //     gain_j [ F A_j(0) / s  -  F exp(-s t0) A_j(s) / s ]  +  offset_j / s,      A_j: moving_string.hpp,
 //
-// the parameters are those of pluck_layout and, for each mode of an end, ln f, ln Q, ln(Z / M). Everything is in closed form with its
-// derivatives; no poles are followed, so that a mode may cross any partial. White noise of the recording is weighed by exp(-2 sigma t).
+// the parameters are those of pluck_layout and, for each mode of an end, ln f, ln Q, ln(Z / M). Everything is in closed form with
+// its derivatives; no poles are followed, so that a mode may cross any partial. White noise of the recording is weighed by exp(-2
+// sigma t).
 //
 #pragma once
 
@@ -46,7 +47,9 @@ struct end_model {
   std::vector<std::size_t> mode_end;  ///< 0 near, 1 far, mode by mode
 
   static constexpr Eigen::Index per_mode = 3;
-  [[nodiscard]] Eigen::Index mode_at(std::size_t mode) const { return layout.size() + per_mode * static_cast<Eigen::Index>(mode); }
+  [[nodiscard]] Eigen::Index mode_at(std::size_t mode) const {
+    return layout.size() + per_mode * static_cast<Eigen::Index>(mode);
+  }
   [[nodiscard]] Eigen::Index size() const { return mode_at(mode_end.size()); }
   [[nodiscard]] bool is_free(Eigen::Index p) const { return p >= layout.size() || layout.is_free(p); }
   [[nodiscard]] admittance_mode mode(const Eigen::VectorXd& v, std::size_t i) const {
@@ -58,7 +61,8 @@ struct end_model {
     for (std::size_t i = 0; i < mode_end.size(); ++i) all.push_back(mode(v, i));
     return all;
   }
-  [[nodiscard]] std::array<std::complex<double>, 2> admittance(const std::vector<admittance_mode>& modes, std::complex<double> s) const {
+  [[nodiscard]] std::array<std::complex<double>, 2> admittance(const std::vector<admittance_mode>& modes,
+                                                               std::complex<double> s) const {
     std::array<std::complex<double>, 2> z{known[0] ? known[0](s) : 0.0, known[1] ? known[1](s) : 0.0};
     for (std::size_t i = 0; i < modes.size(); ++i) z[mode_end[i]] += modes[i](s);
     return z;
@@ -94,7 +98,8 @@ public:
       const std::size_t left = takes[t].force_N[0].size() - std::min(first, takes[t].force_N[0].size());
       lines_.emplace_back(takes[t].rate_Hz, sigma_per_s, left, highest_Hz);
       spectrum one{static_cast<double>(first) / takes[t].rate_Hz, {}};
-      for (std::size_t c = 0; c < 2; ++c) one.x[c] = damped_spectrum(lines_.back(), std::span(takes[t].force_N[c]).subspan(first));
+      for (std::size_t c = 0; c < 2; ++c)
+        one.x[c] = damped_spectrum(lines_.back(), std::span(takes[t].force_N[c]).subspan(first));
       spectra_.push_back(std::move(one));
     }
   }
@@ -105,7 +110,8 @@ public:
   void set_noise(std::array<double, 2> noise_N) { noise_ = noise_N; }
   [[nodiscard]] std::array<double, 2> noise() const { return noise_; }
 
-  [[nodiscard]] rows at(const end_model& m, const Eigen::VectorXd& v, std::size_t take, std::size_t channel, bool for_search = false) const;
+  [[nodiscard]] rows at(const end_model& m, const Eigen::VectorXd& v, std::size_t take, std::size_t channel,
+                        bool for_search = false) const;
   [[nodiscard]] end_equations linearise(const end_model& m, const Eigen::VectorXd& v) const {
     end_equations eq{Eigen::MatrixXd::Zero(m.size(), m.size()), Eigen::VectorXd::Zero(m.size()), 0};
     for (std::size_t t = 0; t < takes(); ++t)
@@ -121,7 +127,8 @@ public:
   /// What white noise alone would leave of the cost.
   [[nodiscard]] double expected_cost() const {
     double sum = 0;
-    for (const auto& line : lines_) sum += 2 * line.weighted_samples() * 2 * static_cast<double>(line.bins()) / static_cast<double>(line.samples);
+    for (const auto& line : lines_)
+      sum += 2 * line.weighted_samples() * 2 * static_cast<double>(line.bins()) / static_cast<double>(line.samples);
     return sum;
   }
 
@@ -146,7 +153,9 @@ struct held_string {
     length_s = one_way_s + yields_s[0] + yields_s[1];
     force = static_forces(position, {yields_s[0] / one_way_s, yields_s[1] / one_way_s});
   }
-  [[nodiscard]] double by_compliance(std::size_t channel, std::size_t end) const { return (channel == end ? -force[channel] : 1 - force[channel]) / length_s; }
+  [[nodiscard]] double by_compliance(std::size_t channel, std::size_t end) const {
+    return (channel == end ? -force[channel] : 1 - force[channel]) / length_s;
+  }
 };
 
 /// Everything at one frequency that the rows of a take share.
@@ -158,19 +167,27 @@ struct end_bin {
   double frequency_Hz, stiffness_s2;
 };
 
-inline end_bin bin_of(const end_model& m, const std::vector<admittance_mode>& modes, const Eigen::VectorXd& v, std::complex<double> s, std::size_t take) {
+inline end_bin bin_of(const end_model& m, const std::vector<admittance_mode>& modes, const Eigen::VectorXd& v,
+                      std::complex<double> s, std::size_t take) {
   using layout = pluck_layout;
   const ringing_string string = m.layout.string(v);
-  const double epsilon = string.stiffness_s2(), step = std::max(1e-3 * std::abs(epsilon), 1e-16), f = std::abs(s.imag()) / (2 * std::numbers::pi);
+  const double epsilon = string.stiffness_s2(), step = std::max(1e-3 * std::abs(epsilon), 1e-16),
+               f = std::abs(s.imag()) / (2 * std::numbers::pi);
   const passage_at now(s, epsilon, string.loss), stiffer(s, epsilon + step, string.loss);
   const double p = v[m.layout.position(take)], one_way = 0.5 / v[layout::fundamental];
-  return {s, (stiffer.gamma_per_s - now.gamma_per_s) / step, std::numbers::pi * f * slowness_ratio(2 * std::numbers::pi * f, epsilon),
-          moving_string(now, {p * one_way * now.gamma_per_s, (1 - p) * one_way * now.gamma_per_s}, m.admittance(modes, s)), now, f, epsilon};
+  return {s,
+          (stiffer.gamma_per_s - now.gamma_per_s) / step,
+          std::numbers::pi * f * slowness_ratio(2 * std::numbers::pi * f, epsilon),
+          moving_string(now, {p * one_way * now.gamma_per_s, (1 - p) * one_way * now.gamma_per_s}, m.admittance(modes, s)),
+          now,
+          f,
+          epsilon};
 }
 
 }  // namespace detail
 
-inline end_problem::rows end_problem::at(const end_model& m, const Eigen::VectorXd& v, std::size_t take, std::size_t c, bool for_search) const {
+inline end_problem::rows end_problem::at(const end_model& m, const Eigen::VectorXd& v, std::size_t take, std::size_t c,
+                                         bool for_search) const {
   using layout = pluck_layout;
   const auto& line = lines_[take];
   const auto bins = static_cast<Eigen::Index>(line.bins());
@@ -180,22 +197,28 @@ inline end_problem::rows end_problem::at(const end_model& m, const Eigen::Vector
   const double f0 = v[layout::fundamental], p = v[L.position(take)], one_way = 0.5 / f0;
   const detail::held_string held(m, modes, p, one_way);
   const double still = held.force[c], turn = (c == 0 ? -1.0 : 1.0) * one_way / held.length_s;
-  const double newtons = std::exp(v[L.at(take, layout::strength)]) * layout::gain(v, c), corner = 2 * std::numbers::pi * m.ac_coupled_Hz[c];
+  const double newtons = std::exp(v[L.at(take, layout::strength)]) * layout::gain(v, c),
+               corner = 2 * std::numbers::pi * m.ac_coupled_Hz[c];
   const double begin = spectra_[take].begin_s, released = v[L.at(take, layout::release)] - begin, h = 1 / line.rate_Hz;
   const double weight = std::sqrt(2.0 / static_cast<double>(line.samples)) * line.rate_Hz / noise_[c];
   const double offset = v[L.at(take, layout::offset_near + static_cast<int>(c))], fades = std::exp(-corner * begin);
   rows out{Eigen::VectorXd(2 * bins), Eigen::MatrixXd::Zero(2 * bins, m.size()), {}, Eigen::VectorXd(bins)};
   for (Eigen::Index i = 0; i < bins; ++i) {
     const detail::end_bin b = detail::bin_of(m, modes, v, line.at(static_cast<std::size_t>(i)), take);
-    const complex s = b.s, A = b.a.force[c], level = corner > 0 ? 0.0 : h / (1.0 - std::exp(-s * h)), slow = fades * h / (1.0 - std::exp(-(s + corner) * h));
+    const complex s = b.s, A = b.a.force[c], level = corner > 0 ? 0.0 : h / (1.0 - std::exp(-s * h)),
+                  slow = fades * h / (1.0 - std::exp(-(s + corner) * h));
     const complex turned(0, 0.5 * string.loss.inverse_q(b.frequency_Hz)), kappa = (1 + v[layout::convention]) * turned;
-    const complex gone = newtons * std::exp(-s * released) / (s + corner), ring = gone * (A + kappa * (A - still)), by_A = -gone * (1.0 + kappa), by_still = newtons * level + gone * kappa;
+    const complex gone = newtons * std::exp(-s * released) / (s + corner), ring = gone * (A + kappa * (A - still)),
+                  by_A = -gone * (1.0 + kappa), by_still = newtons * level + gone * kappa;
     const complex signal = newtons * still * level - ring, model = signal + offset * slow;
-    const auto put = [&](Eigen::Index q, complex d) { out.jacobian(i, q) = weight * d.real(), out.jacobian(bins + i, q) = weight * d.imag(); };
+    const auto put = [&](Eigen::Index q, complex d) {
+      out.jacobian(i, q) = weight * d.real(), out.jacobian(bins + i, q) = weight * d.imag();
+    };
     const complex r = weight * (spectra_[take].x[c][static_cast<std::size_t>(i)] - model);
     out.residual[i] = r.real(), out.residual[bins + i] = r.imag();
     out.model_power[i] = std::norm(ring);
-    const complex by_gamma = by_A * one_way * (b.a.by_phase[c][0] * p + b.a.by_phase[c][1] * (1 - p)), by_stiffness = by_gamma * b.slope_stiffness;
+    const complex by_gamma = by_A * one_way * (b.a.by_phase[c][0] * p + b.a.by_phase[c][1] * (1 - p)),
+                  by_stiffness = by_gamma * b.slope_stiffness;
     put(layout::fundamental, -by_gamma * b.passage.gamma_per_s / f0 - 2 * b.stiffness_s2 / f0 * by_stiffness);
     put(layout::inharmonicity, by_stiffness * std::pow(2 * std::numbers::pi * f0, -2));
     put(layout::inverse_quality, by_gamma * b.slope_quality);

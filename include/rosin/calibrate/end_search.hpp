@@ -1,12 +1,13 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Which further mode, at which end, would explain most of what a fit of plucks leaves? A mode enters the admittance linearly, so that
-// to first order its effect on the recordings is d = (dA / dz_j) m(s), and the score test (Rao 1948)
+// Which further mode, at which end, would explain most of what a fit of plucks leaves? A mode enters the admittance linearly, so
+// that to first order its effect on the recordings is d = (dA / dz_j) m(s), and the score test (Rao 1948)
 //
 //     mix = (d'r - d'J H^-1 J'r) / (d'd - d'J H^-1 J'd),      gain of ln L = mix^2 (...) / 2
 //
-// tells how heavy it would be and what it would be worth, everything else readjusted, for thousands of frequencies and Qs in one sweep.
+// tells how heavy it would be and what it would be worth, everything else readjusted, for thousands of frequencies and Qs in one
+// sweep.
 //
 #pragma once
 
@@ -16,8 +17,8 @@ namespace rosin {
 
 struct mode_candidate {
   std::size_t end = 0;
-  admittance_mode mode;   ///< with the mass that the score proposes
-  double gain = 0;        ///< of ln L
+  admittance_mode mode;  ///< with the mass that the score proposes
+  double gain = 0;       ///< of ln L
 };
 
 namespace detail {
@@ -38,12 +39,14 @@ struct score_sums {
   Eigen::MatrixXd with_jacobian;
 };
 
-inline void add_scores(const end_problem::rows& r, const damped_line_of_frequencies& line, std::span<const mode_candidate> batch, score_sums& sums) {
+inline void add_scores(const end_problem::rows& r, const damped_line_of_frequencies& line, std::span<const mode_candidate> batch,
+                       score_sums& sums) {
   const auto bins = static_cast<Eigen::Index>(line.bins());
   Eigen::MatrixXd columns(2 * bins, static_cast<Eigen::Index>(batch.size()));
   for (std::size_t k = 0; k < batch.size(); ++k)
     for (Eigen::Index i = 0; i < bins; ++i) {
-      const std::complex<double> d = r.by_admittance[batch[k].end][static_cast<std::size_t>(i)] * batch[k].mode(line.at(static_cast<std::size_t>(i)));
+      const std::complex<double> d =
+          r.by_admittance[batch[k].end][static_cast<std::size_t>(i)] * batch[k].mode(line.at(static_cast<std::size_t>(i)));
       columns(i, static_cast<Eigen::Index>(k)) = d.real(), columns(bins + i, static_cast<Eigen::Index>(k)) = d.imag();
     }
   sums.with_residual += columns.transpose() * r.residual;
@@ -54,8 +57,11 @@ inline void add_scores(const end_problem::rows& r, const damped_line_of_frequenc
 }  // namespace detail
 
 /// The candidates with their gains, the best first. `hessian`: of data and prior at `v`.
-[[nodiscard]] inline std::vector<mode_candidate> search_modes(const end_problem& problem, const end_model& m, const Eigen::VectorXd& v, const Eigen::MatrixXd& hessian,
-                                                              const Eigen::VectorXd& gradient, const std::array<bool, 2>& free_ends, double from_Hz, double to_Hz) {
+[[nodiscard]] inline std::vector<mode_candidate> search_modes(const end_problem& problem, const end_model& m,
+                                                              const Eigen::VectorXd& v, const Eigen::MatrixXd& hessian,
+                                                              const Eigen::VectorXd& gradient,
+                                                              const std::array<bool, 2>& free_ends, double from_Hz,
+                                                              double to_Hz) {
   constexpr std::size_t at_once = 64;
   std::vector<mode_candidate> all = detail::mode_grid(free_ends, from_Hz, to_Hz);
   std::vector<detail::score_sums> sums;
@@ -67,7 +73,8 @@ inline void add_scores(const end_problem::rows& r, const damped_line_of_frequenc
     for (std::size_t c = 0; c < 2; ++c) {
       const end_problem::rows r = problem.at(m, v, t, c, true);
       for (std::size_t b = 0; b < sums.size(); ++b)
-        detail::add_scores(r, problem.line(t), std::span(all).subspan(b * at_once, std::min(at_once, all.size() - b * at_once)), sums[b]);
+        detail::add_scores(r, problem.line(t), std::span(all).subspan(b * at_once, std::min(at_once, all.size() - b * at_once)),
+                           sums[b]);
     }
   const Eigen::MatrixXd inverse = invert_free(m, hessian);
   const Eigen::VectorXd step = inverse * gradient;

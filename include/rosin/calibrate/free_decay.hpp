@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A stroke that ends with the bow lifted: from then on the string rings freely between its ends, and every partial is a damped line in
-// both forces. So pitch, inharmonicity and loss of the very string that was bowed, at the tension and temperature it had then, come out
-// of the take itself; no gain, no level and no place of a contact enters.
+// A stroke that ends with the bow lifted: from then on the string rings freely between its ends, and every partial is a damped
+// line in both forces. So pitch, inharmonicity and loss of the very string that was bowed, at the tension and temperature it had
+// then, come out of the take itself; no gain, no level and no place of a contact enters.
 //
 //     contact_ends: from when on the contact's (reconstructed) force is nothing
 //     fit_free_decay: partials by number, each sought where those below foretell it (partials.hpp); f_n = n f0 sqrt(1 + b n^2) and the
@@ -26,9 +26,11 @@
 
 namespace rosin {
 
-/// The first sample after which a contact's force stays below a twentieth of its strongest rms, both over a period; none where it does not
-/// end, or there is no force at all. `level_known` false: sensors are AC coupled, and only what the force varies by in a period counts.
-[[nodiscard]] inline std::optional<std::size_t> contact_ends(std::span<const double> force_N, double rate_Hz, double fundamental_Hz, bool level_known = true) {
+/// The first sample after which a contact's force stays below a twentieth of its strongest rms, both over a period; none where it
+/// does not end, or there is no force at all. `level_known` false: sensors are AC coupled, and only what the force varies by in a
+/// period counts.
+[[nodiscard]] inline std::optional<std::size_t> contact_ends(std::span<const double> force_N, double rate_Hz,
+                                                             double fundamental_Hz, bool level_known = true) {
   const auto period = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(rate_Hz / fundamental_Hz)));
   std::vector<double> power;
   for (std::size_t first = 0; first + period <= force_N.size(); first += period) {
@@ -65,7 +67,8 @@ struct free_decay_options {
 namespace detail {
 
 /// Those of one end, from the first on until three in a row are missing.
-inline std::vector<partial> decaying_partials(const baseband_bank& bank, double nominal_Hz, const free_decay_options& o, double begin_s, double end_s) {
+inline std::vector<partial> decaying_partials(const baseband_bank& bank, double nominal_Hz, const free_decay_options& o,
+                                              double begin_s, double end_s) {
   std::vector<partial> found;
   std::vector<numbered_frequency> lines;
   double f0 = nominal_Hz, b = o.inharmonicity;
@@ -91,9 +94,11 @@ inline std::vector<partial> decaying_partials(const baseband_bank& bank, double 
 }  // namespace detail
 
 /// The string rings freely from begin_s of the recording to its end. Fails where it does not.
-[[nodiscard]] inline outcome<free_decay> fit_free_decay(const std::array<std::span<const double>, 2>& end_N, double rate_Hz, double nominal_Hz, double begin_s,
+[[nodiscard]] inline outcome<free_decay> fit_free_decay(const std::array<std::span<const double>, 2>& end_N, double rate_Hz,
+                                                        double nominal_Hz, double begin_s,
                                                         const free_decay_options& options = {}) {
-  if (!(rate_Hz > 0 && nominal_Hz > 0 && 4 * nominal_Hz < rate_Hz)) return failure{"free decay: rate and pitch to be expected must be above 0, and four times the pitch below the rate"};
+  if (!(rate_Hz > 0 && nominal_Hz > 0 && 4 * nominal_Hz < rate_Hz))
+    return failure{"free decay: rate and pitch to be expected must be above 0, and four times the pitch below the rate"};
   free_decay out;
   std::vector<numbered_frequency> lines;
   std::vector<measured_decay> decays;
@@ -108,7 +113,8 @@ inline std::vector<partial> decaying_partials(const baseband_bank& bank, double 
       decays.push_back({p.frequency_Hz, p.decay_per_s, p.decay_sd});
     }
   }
-  if (std::min(out.partials[0].size(), out.partials[1].size()) < 3) return failure{"free decay: fewer than three partials are damped lines"};
+  if (std::min(out.partials[0].size(), out.partials[1].size()) < 3)
+    return failure{"free decay: fewer than three partials are damped lines"};
   const auto pitch = fit_pitch(lines, nominal_Hz, options.inharmonicity);
   out.fundamental_Hz = pitch.value[0], out.inharmonicity = pitch.value[1];
   out.fundamental_sd = std::sqrt(pitch.covariance(0, 0)), out.inharmonicity_sd = std::sqrt(pitch.covariance(1, 1));

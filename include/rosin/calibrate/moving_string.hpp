@@ -24,7 +24,7 @@ namespace rosin {
 
 /// Stiffness and loss of a string at one complex frequency.
 struct passage_at {
-  std::complex<double> gamma_per_s;               ///< c times the propagation constant
+  std::complex<double> gamma_per_s;                      ///< c times the propagation constant
   std::complex<double> force_factor = 1, a = 1, b = -1;  ///< G, alpha, beta
 
   passage_at(std::complex<double> s, double stiffness_s2, const loss_law& loss) {
@@ -34,7 +34,8 @@ struct passage_at {
     const std::complex<double> softer = plain::reciprocal(1.0 + K);
     force_factor = (1.0 + 2.0 * K) * softer;
     const std::complex<double> ratio = plain::sqrt(1.0 + K) * plain::reciprocal(force_factor);
-    const std::complex<double> bent = std::complex<double>(0, 1) * q * plain::sqrt(K * softer) * K * plain::reciprocal(w * force_factor);
+    const std::complex<double> bent =
+        std::complex<double>(0, 1) * q * plain::sqrt(K * softer) * K * plain::reciprocal(w * force_factor);
     a = ratio + bent, b = -ratio + bent;
   }
 };
@@ -49,8 +50,10 @@ struct moving_response {
 [[nodiscard]] inline moving_response moving_string(const passage_at& p, const std::array<std::complex<double>, 2>& theta,
                                                    const std::array<std::complex<double>, 2>& z) {
   using complex = std::complex<double>;
-  const std::array<complex, 2> D{std::exp(-theta[0]), std::exp(-theta[1])}, a{1.0 + p.a * z[0], 1.0 + p.a * z[1]}, b{1.0 + p.b * z[0], 1.0 + p.b * z[1]};
-  const complex round = D[0] * D[0] * D[1] * D[1], G = p.force_factor, per = plain::reciprocal(G * (a[0] * a[1] - b[0] * b[1] * round));
+  const std::array<complex, 2> D{std::exp(-theta[0]), std::exp(-theta[1])}, a{1.0 + p.a * z[0], 1.0 + p.a * z[1]},
+      b{1.0 + p.b * z[0], 1.0 + p.b * z[1]};
+  const complex round = D[0] * D[0] * D[1] * D[1], G = p.force_factor,
+                per = plain::reciprocal(G * (a[0] * a[1] - b[0] * b[1] * round));
   moving_response r;
   for (std::size_t j = 0; j < 2; ++j) {
     const std::size_t o = 1 - j;
@@ -60,7 +63,8 @@ struct moving_response {
     r.by_phase[j][j] = -r.force[j] - lost;
     r.by_phase[j][o] = 2.0 * back * per - lost;
     r.by_admittance[j][j] = -r.force[j] * per * G * (p.a * a[o] - p.b * b[o] * round);
-    r.by_admittance[j][o] = (p.a * D[j] - p.b * D[j] * D[o] * D[o]) * per - r.force[j] * per * G * (p.a * a[j] - p.b * b[j] * round);
+    r.by_admittance[j][o] =
+        (p.a * D[j] - p.b * D[j] * D[o] * D[o]) * per - r.force[j] * per * G * (p.a * a[j] - p.b * b[j] * round);
   }
   return r;
 }

@@ -45,8 +45,8 @@ struct bell_window {
 struct baseband_record {
   std::vector<std::complex<double>> samples;
   double rate_Hz = 0;
-  double centre_Hz = 0;   ///< the frequency that became zero
-  bell_window window;     ///< gain against f - centre
+  double centre_Hz = 0;  ///< the frequency that became zero
+  bell_window window;    ///< gain against f - centre
 };
 
 /// All basebands of one recording have one half width and one rate. Precondition: a signal that is not empty.
@@ -54,7 +54,8 @@ class baseband_bank {
 public:
   baseband_bank(std::span<const double> signal, double rate_Hz, double half_width_Hz) : rate_Hz_{rate_Hz} {
     half_width_Hz_ = std::min(half_width_Hz, rate_Hz / 4);
-    const auto pause = static_cast<std::size_t>(std::ceil(4 * rate_Hz / half_width_Hz_));  // so that the end does not wrap to the start
+    const auto pause =
+        static_cast<std::size_t>(std::ceil(4 * rate_Hz / half_width_Hz_));  // so that the end does not wrap to the start
     length_ = fast_size(signal.size() + pause);
     std::vector<double> padded(length_, 0.0);
     std::copy(signal.begin(), signal.end(), padded.begin());
@@ -62,7 +63,8 @@ public:
     eigen_fft<double>{length_}.forward(padded.data(), spectrum_.data());
     df_Hz_ = rate_Hz / static_cast<double>(length_);
     short_length_ = fast_size(2 * static_cast<std::size_t>(half_width_Hz_ / df_Hz_) + 2);
-    kept_ = static_cast<std::size_t>(static_cast<double>(short_length_) * static_cast<double>(signal.size()) / static_cast<double>(length_));
+    kept_ = static_cast<std::size_t>(static_cast<double>(short_length_) * static_cast<double>(signal.size()) /
+                                     static_cast<double>(length_));
   }
 
   [[nodiscard]] baseband_record around(double frequency_Hz) const {
@@ -73,8 +75,8 @@ public:
     std::vector<std::complex<double>> bins(short_length_), samples(short_length_);
     for (std::ptrdiff_t k = -reach; k <= reach; ++k)
       if (centre + k > 0 && centre + k < static_cast<std::ptrdiff_t>(spectrum_.size()))
-        bins[static_cast<std::size_t>((k + size) % size)] = scale() * window(static_cast<double>(k) * df_Hz_) *
-                                                            spectrum_[static_cast<std::size_t>(centre + k)];
+        bins[static_cast<std::size_t>((k + size) % size)] =
+            scale() * window(static_cast<double>(k) * df_Hz_) * spectrum_[static_cast<std::size_t>(centre + k)];
     eigen_fft<std::complex<double>>{short_length_}.inverse(bins.data(), samples.data());
     samples.resize(kept_);
     return {std::move(samples), rate(), static_cast<double>(centre) * df_Hz_, window};

@@ -57,7 +57,8 @@ inline std::vector<std::complex<double>> left_over(complex_span z, double rate_H
 }
 
 /// The two exponents, s = (-decay, detuning) relative to `around`, of the recurrence z[j] = g1 z[j-m] + g2 z[j-2m].
-inline std::array<std::complex<double>, 2> predicted_exponents(complex_span z, double rate_Hz, double around_rad_s, std::size_t lag) {
+inline std::array<std::complex<double>, 2> predicted_exponents(complex_span z, double rate_Hz, double around_rad_s,
+                                                               std::size_t lag) {
   Eigen::Matrix2cd gram = Eigen::Matrix2cd::Zero();
   Eigen::Vector2cd right = Eigen::Vector2cd::Zero();
   const auto at = [&](std::size_t j) { return z[j] * std::polar(1.0, -around_rad_s * static_cast<double>(j) / rate_Hz); };
@@ -120,8 +121,8 @@ inline line_fit fit_one_line(std::span<const std::complex<double>> z, double rat
 }
 
 /// `one`, or two lines that explain the record so much better. filled: the part of the rate that the band fills with noise.
-inline line_fit one_or_two_lines(std::span<const std::complex<double>> z, double rate_Hz, const line_fit& one, double tolerance_Hz,
-                                 double filled) {
+inline line_fit one_or_two_lines(std::span<const std::complex<double>> z, double rate_Hz, const line_fit& one,
+                                 double tolerance_Hz, double filled) {
   auto starts = detail::starts_for_two(z, rate_Hz, one, tolerance_Hz);
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < starts.size(); ++i) order.emplace_back(solve_amplitudes(z, rate_Hz, starts[i]), i);

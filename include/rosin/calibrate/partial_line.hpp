@@ -99,8 +99,7 @@ inline line_normals line_normals_of(complex_span z, double rate_Hz, const line_m
     const std::complex<double> r = z[j] - line_row(m, static_cast<double>(j) / rate_Hz, glide_free, row);
     for (Eigen::Index a = 0; a < n; ++a) {
       normals.gradient[a] += row[a].real() * r.real() + row[a].imag() * r.imag();
-      for (Eigen::Index b = 0; b <= a; ++b)
-        normals.matrix(a, b) += row[a].real() * row[b].real() + row[a].imag() * row[b].imag();
+      for (Eigen::Index b = 0; b <= a; ++b) normals.matrix(a, b) += row[a].real() * row[b].real() + row[a].imag() * row[b].imag();
     }
     normals.residual += std::norm(r);
   }

@@ -3,8 +3,8 @@
 //
 // Where are the partials? One spectrum of the first second or so after the attack, and a model of where to look that learns.
 //
-// Start: the pair (f0, b) whose first eight partials, all together, stand highest above the noise around them, f0 within a few per
-// cent of the nominal value. Then upwards: each partial is sought where those below foretell it, in a window as wide as
+// Start: the pair (f0, b) whose first eight partials, all together, stand highest above the noise around them, f0 within a few
+// per cent of the nominal value. Then upwards: each partial is sought where those below foretell it, in a window as wide as
 // the forecast is unsure, and joins the fit. So the inharmonicity is learnt while the windows are still narrow enough to
 // tell neighbours apart. The spectrum's window rises in a tenth of its length and falls over the rest, so that high partials,
 // which die at once, are not lost in the foot of a symmetric one.
@@ -71,7 +71,8 @@ public:
   [[nodiscard]] std::optional<peak> strongest(double low_Hz, double high_Hz) const {
     const auto below = [](const peak& p, double f) { return p.frequency_Hz < f; };
     std::optional<peak> best;
-    for (auto p = std::lower_bound(peaks_.begin(), peaks_.end(), low_Hz, below); p != peaks_.end() && p->frequency_Hz <= high_Hz; ++p)
+    for (auto p = std::lower_bound(peaks_.begin(), peaks_.end(), low_Hz, below); p != peaks_.end() && p->frequency_Hz <= high_Hz;
+         ++p)
       if (!best || p->power > best->power) best = *p;
     return best;
   }
@@ -82,7 +83,8 @@ private:
     for (double f = 0; f < bin_Hz_ * static_cast<double>(power_.size()); f += spacing_Hz_ / 4) {
       const auto k = static_cast<std::size_t>(f / bin_Hz_);
       const std::size_t a = k > half ? k - half : 1, b = std::min(k + half, power_.size());
-      std::vector<double> near(power_.begin() + static_cast<std::ptrdiff_t>(std::min(a, b - 1)), power_.begin() + static_cast<std::ptrdiff_t>(b));
+      std::vector<double> near(power_.begin() + static_cast<std::ptrdiff_t>(std::min(a, b - 1)),
+                               power_.begin() + static_cast<std::ptrdiff_t>(b));
       const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
       std::nth_element(near.begin(), middle, near.end());
       floor_.push_back(*middle / 0.693 + 1e-300);

@@ -28,14 +28,15 @@ struct partial {
   int number = 0;
   double frequency_Hz = 0, frequency_sd = 0;
   double decay_per_s = 0, decay_sd = 0;  ///< of the amplitude
-  double amplitude = 0, amplitude_sd = 0;  ///< at the start of the stretch, in the unit of the signal; of two lines: root of squares
-  bool doubled = false;                  ///< two lines
-  double split_Hz = 0;                   ///< between the two
+  double amplitude = 0,
+         amplitude_sd = 0;  ///< at the start of the stretch, in the unit of the signal; of two lines: root of squares
+  bool doubled = false;     ///< two lines
+  double split_Hz = 0;      ///< between the two
   double spread_Hz = 0, spread_per_s = 0;  ///< of two lines about their mean, weighted by energy; contained in the sd above
-  double lasts_s = 0;                    ///< length of the stretch that was fitted
-  double signal_to_noise = 0;            ///< energy of the partial against the noise at it (matched filter), a power ratio
-  double misfit = 0;                     ///< energy left over beyond the noise around, as a part of the whole
-  double weight = 0;                     ///< in the fit of pitch and inharmonicity: 1 taken as it is, 0 left out
+  double lasts_s = 0;                      ///< length of the stretch that was fitted
+  double signal_to_noise = 0;              ///< energy of the partial against the noise at it (matched filter), a power ratio
+  double misfit = 0;                       ///< energy left over beyond the noise around, as a part of the whole
+  double weight = 0;                       ///< in the fit of pitch and inharmonicity: 1 taken as it is, 0 left out
 
   [[nodiscard]] double inverse_q() const noexcept { return decay_per_s / (3.14159265358979323846 * frequency_Hz); }
 };
@@ -88,7 +89,8 @@ inline line_noise noise_beside(complex_span left, double rate_Hz, const damped_p
     const double offset = p.detuning_rad_s / full_turn + k * step;
     if (k == 0 || std::abs(offset) > 0.55 * window.half_width_Hz) continue;
     const double gain = window(offset);
-    const std::complex<double> turn_by = std::polar(std::exp(-decay / rate_Hz), -(p.detuning_rad_s + full_turn * k * step) / rate_Hz);
+    const std::complex<double> turn_by =
+        std::polar(std::exp(-decay / rate_Hz), -(p.detuning_rad_s + full_turn * k * step) / rate_Hz);
     std::complex<double> sum = 0, w = 1;
     for (const auto& r : left) sum += w * r, w *= turn_by;
     powers.push_back(std::norm(sum) / (energy * gain * gain));
@@ -109,7 +111,8 @@ inline Eigen::MatrixXd line_covariance(const line_fit& fit, double noise) {
 }
 
 inline const damped_part& strongest(const line_model& m, double lasts) {
-  return *std::max_element(m.parts.begin(), m.parts.end(), [&](const auto& a, const auto& b) { return a.energy(lasts) < b.energy(lasts); });
+  return *std::max_element(m.parts.begin(), m.parts.end(),
+                           [&](const auto& a, const auto& b) { return a.energy(lasts) < b.energy(lasts); });
 }
 
 }  // namespace detail
@@ -161,7 +164,8 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
   p.amplitude = std::sqrt(power);
   p.amplitude_sd = std::sqrt(loudness.dot(covariance * loudness) / power);
   p.doubled = t.fit.model.parts.size() > 1;
-  if (p.doubled) p.split_Hz = std::abs(t.fit.model.parts[0].detuning_rad_s - t.fit.model.parts[1].detuning_rad_s) / detail::full_turn;
+  if (p.doubled)
+    p.split_Hz = std::abs(t.fit.model.parts[0].detuning_rad_s - t.fit.model.parts[1].detuning_rad_s) / detail::full_turn;
   p.signal_to_noise = energy * t.rate_Hz / noise.at_line;
   const double expected = noise.away * static_cast<double>(t.samples.size()) * detail::filled_with_noise(t.window, t.rate_Hz);
   p.misfit = std::max(t.fit.residual - 1.5 * expected, 0.0) / std::max(detail::energy_of(t.samples), 1e-300);
@@ -179,11 +183,13 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
   std::size_t length = detail::audible_samples(z, whole.rate_Hz);
   line_fit one = fit_one_line(z.first(length), whole.rate_Hz, whole.centre_Hz, tolerance_Hz);
   const double decay = one.model.parts[0].decay_per_s;
-  const auto enough = decay > 0 ? std::max<std::size_t>(12, static_cast<std::size_t>(std::min(5 / decay * whole.rate_Hz, 1e9))) : length;
+  const auto enough =
+      decay > 0 ? std::max<std::size_t>(12, static_cast<std::size_t>(std::min(5 / decay * whole.rate_Hz, 1e9))) : length;
   if (enough < length) one = fit_line(z.first(length = enough), whole.rate_Hz, one.model);
   if (!(std::abs(one.model.parts[0].detuning_rad_s) < detail::full_turn * 1.5 * tolerance_Hz)) return std::nullopt;
   partial_track track{number, {z.begin(), z.begin() + static_cast<std::ptrdiff_t>(length)}, whole.rate_Hz, whole.window, one};
-  track.fit = one_or_two_lines(track.samples, whole.rate_Hz, one, 1.5 * tolerance_Hz, detail::filled_with_noise(whole.window, whole.rate_Hz));
+  track.fit = one_or_two_lines(track.samples, whole.rate_Hz, one, 1.5 * tolerance_Hz,
+                               detail::filled_with_noise(whole.window, whole.rate_Hz));
   return track;
 }
 

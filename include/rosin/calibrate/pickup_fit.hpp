@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Calibration from one channel that knows nothing of newtons: a pickup or a microphone, a plucked or struck string. Out come the
-// partials, the pitch and inharmonicity behind them (f_n = n f0 sqrt(1 + b n^2)) and the loss law, each with the standard deviation
-// that the data deserve: errors of the single lines, and their scatter about the law, which is mostly the supports' doing.
+// partials, the pitch and inharmonicity behind them (f_n = n f0 sqrt(1 + b n^2)) and the loss law, each with the standard
+// deviation that the data deserve: errors of the single lines, and their scatter about the law, which is mostly the supports'
+// doing.
 //
 //     search (partial_search) -> one or two lines each (partials) -> common glide (pickup_glide) -> pitch, loss (pickup_regression)
 //
@@ -32,10 +33,10 @@
 namespace rosin {
 
 struct pickup_options {
-  std::optional<double> release_s{};  ///< when the string is let go; without it: where the sound rises
-  double skip_s = 0.05;               ///< of the sound after that: attack, and the worst of the glide
+  std::optional<double> release_s{};                       ///< when the string is let go; without it: where the sound rises
+  double skip_s = 0.05;                                    ///< of the sound after that: attack, and the worst of the glide
   double end_s = std::numeric_limits<double>::infinity();  ///< the string rings freely up to here, or to the end
-  double search_range = 0.06;         ///< how far the pitch may be from the nominal one, as a part of it
+  double search_range = 0.06;                              ///< how far the pitch may be from the nominal one, as a part of it
   double highest_Hz = std::numeric_limits<double>::infinity();
   int partials_at_most = 64;
 };
@@ -46,11 +47,11 @@ struct pickup_fit {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of f0 and b
   loss_estimate loss;
   std::vector<partial> partials;
-  double scatter_Hz = 0;        ///< of the partials about the law, beyond their own errors (of the first one, if in_proportion)
-  bool in_proportion = false;   ///< the scatter grows with the number of the partial
-  pitch_glide glide;            ///< taken out of all partials; relative is 0 where none was found
+  double scatter_Hz = 0;       ///< of the partials about the law, beyond their own errors (of the first one, if in_proportion)
+  bool in_proportion = false;  ///< the scatter grows with the number of the partial
+  pitch_glide glide;           ///< taken out of all partials; relative is 0 where none was found
   double glide_sd = 0;
-  double start_s = 0;           ///< of what was fitted, in the time of the recording
+  double start_s = 0;  ///< of what was fitted, in the time of the recording
   std::vector<std::string> warnings;
 };
 
@@ -72,7 +73,8 @@ inline double sound_begins_s(std::span<const double> x, double rate_Hz) {
 
 inline std::string pickup_input_problem(std::span<const double> x, double rate_Hz, double nominal_Hz, const pickup_options& o) {
   if (!(rate_Hz > 0) || !std::isfinite(rate_Hz)) return "sampling rate: has to be positive";
-  if (!(nominal_Hz >= 5) || !(nominal_Hz < rate_Hz / 5)) return "nominal fundamental: has to lie between 5 Hz and a fifth of the sampling rate";
+  if (!(nominal_Hz >= 5) || !(nominal_Hz < rate_Hz / 5))
+    return "nominal fundamental: has to lie between 5 Hz and a fifth of the sampling rate";
   if (!(o.search_range > 0) || !(o.search_range < 0.3)) return "search_range: has to lie between 0 and 0.3";
   for (std::size_t j = 0; j < x.size(); ++j)
     if (!std::isfinite(x[j])) return "sample " + std::to_string(j) + ": not a finite number";
@@ -86,8 +88,8 @@ inline bool believable(const partial& p, double expected_Hz, double f0) {
 }
 
 /// The tracks of what was found that can be believed.
-inline std::vector<partial_track> pickup_tracks(const baseband_bank& bank, const found_partials& found, double start_s, double stop_s,
-                                                double highest_Hz, double tolerance_Hz) {
+inline std::vector<partial_track> pickup_tracks(const baseband_bank& bank, const found_partials& found, double start_s,
+                                                double stop_s, double highest_Hz, double tolerance_Hz) {
   std::vector<partial_track> tracks;
   for (const auto& line : found.partials) {
     if (line.frequency_Hz > highest_Hz) continue;
@@ -112,7 +114,8 @@ inline Eigen::Matrix2d two_pitches(const std::vector<partial>& partials, const r
   const double first = partials.front().number, last = partials.back().number;
   Eigen::VectorXd drift(static_cast<Eigen::Index>(partials.size()));
   for (std::size_t i = 0; i < partials.size(); ++i)
-    drift[static_cast<Eigen::Index>(i)] = spread * partials[i].frequency_Hz * ((partials[i].number - first) / (last - first) - 0.5);
+    drift[static_cast<Eigen::Index>(i)] =
+        spread * partials[i].frequency_Hz * ((partials[i].number - first) / (last - first) - 0.5);
   const Eigen::Vector2d moved = pitch.gain * drift;
   Eigen::Matrix2d covariance = moved * moved.transpose();
   covariance(0, 0) += std::pow(spread * pitch.value[0], 2);
@@ -127,7 +130,8 @@ inline void fit_laws(pickup_fit& fit, const found_partials& found, const glide_e
     decays.push_back({p.frequency_Hz, p.decay_per_s, p.decay_sd});
   }
   const robust_fit pitch = fit_pitch(lines, found.fundamental_Hz, found.inharmonicity);
-  const Eigen::VectorXd share = Eigen::Map<const Eigen::VectorXd>(glide.share_Hz.data(), static_cast<Eigen::Index>(glide.share_Hz.size()));
+  const Eigen::VectorXd share =
+      Eigen::Map<const Eigen::VectorXd>(glide.share_Hz.data(), static_cast<Eigen::Index>(glide.share_Hz.size()));
   const Eigen::Vector2d common = glide.sd * (pitch.gain * share);
   fit.fundamental_Hz = pitch.value[0];
   fit.inharmonicity = pitch.value[1];
@@ -165,12 +169,13 @@ inline void add_warnings(pickup_fit& fit, double nominal_Hz) {
   say(!(fit.inharmonicity > 2 * fit.inharmonicity_sd), "inharmonicity: not told from zero by these partials");
   say(5 * left_out > count, "partials: " + std::to_string(left_out) + of + "lie far off the law of a stiff string");
   say(5 * growing > count, "decay: " + std::to_string(growing) + of + "do not clearly decay; a string that is let go does");
-  say(5 * odd > count, "decay: " + std::to_string(odd) + of + "are not one or two damped lines (more than a tenth of their energy is left over)");
+  say(5 * odd > count,
+      "decay: " + std::to_string(odd) + of + "are not one or two damped lines (more than a tenth of their energy is left over)");
   say(std::abs(fit.glide.relative) > 1e-3, "pitch glide: sharp by " + percent(fit.glide.relative) + " at the start; taken out");
 }
 
-inline outcome<pickup_fit> fit_stretch(std::span<const double> signal, double rate_Hz, double nominal_Hz, const pickup_options& options,
-                                       const baseband_bank& bank, double start_s, double stop_s) {
+inline outcome<pickup_fit> fit_stretch(std::span<const double> signal, double rate_Hz, double nominal_Hz,
+                                       const pickup_options& options, const baseband_bank& bank, double start_s, double stop_s) {
   const double seen_s = std::min(stop_s - start_s, std::max(1.0, 50 / nominal_Hz));
   const auto first = signal.subspan(static_cast<std::size_t>(start_s * rate_Hz), static_cast<std::size_t>(seen_s * rate_Hz));
   const auto found = find_partials(first, rate_Hz, nominal_Hz, options.search_range, options.partials_at_most);
@@ -189,7 +194,8 @@ inline outcome<pickup_fit> fit_stretch(std::span<const double> signal, double ra
     shares.push_back(glide.share_Hz[i]);
   }
   if (fit.partials.size() < 3) return failure{"partials: fewer than three are damped lines"};
-  const auto steady = std::count_if(fit.partials.begin(), fit.partials.end(), [](const partial& p) { return p.decay_per_s < p.decay_sd; });
+  const auto steady =
+      std::count_if(fit.partials.begin(), fit.partials.end(), [](const partial& p) { return p.decay_per_s < p.decay_sd; });
   if (2 * steady > static_cast<std::ptrdiff_t>(fit.partials.size()))
     return failure{"decay: " + std::to_string(steady) + " of " + std::to_string(fit.partials.size()) +
                    " partials do not clearly decay; this is no string that rings freely"};
@@ -205,12 +211,15 @@ inline outcome<pickup_fit> fit_stretch(std::span<const double> signal, double ra
 
 }  // namespace detail
 
-/// Fits a recording of one free ringing. nominal_Hz: the pitch to be expected, within options.search_range. A glide is modelled, not
-/// waited for: once it is over, the high partials are gone, and what stands in their places is the pickup's distortion of the low ones.
+/// Fits a recording of one free ringing. nominal_Hz: the pitch to be expected, within options.search_range. A glide is modelled,
+/// not waited for: once it is over, the high partials are gone, and what stands in their places is the pickup's distortion of the
+/// low ones.
 [[nodiscard]] inline outcome<pickup_fit> fit_pickup(std::span<const double> signal, double rate_Hz, double nominal_Hz,
                                                     const pickup_options& options = {}) {
-  if (const auto problem = detail::pickup_input_problem(signal, rate_Hz, nominal_Hz, options); !problem.empty()) return failure{problem};
-  const double end = std::min(options.end_s, static_cast<double>(signal.size()) / rate_Hz), least = std::max(0.15, 12 / nominal_Hz);
+  if (const auto problem = detail::pickup_input_problem(signal, rate_Hz, nominal_Hz, options); !problem.empty())
+    return failure{problem};
+  const double end = std::min(options.end_s, static_cast<double>(signal.size()) / rate_Hz),
+               least = std::max(0.15, 12 / nominal_Hz);
   const auto heard = signal.first(static_cast<std::size_t>(std::max(end, 0.0) * rate_Hz));
   const failure brief{"signal: less than " + std::to_string(least) + " s of ringing to look at"};
   if (static_cast<double>(heard.size()) < least * rate_Hz) return brief;

@@ -137,9 +137,9 @@ inline double likeliest_glide_decay(const std::vector<partial_track>& tracks, do
 /// The same tracks with the glide taken out: one line or two is decided anew.
 inline void take_out_glide(std::vector<partial_track>& tracks, const pitch_glide& glide, double tolerance_Hz) {
   for (partial_track& t : tracks) {
-    const line_fit one = fit_line(t.samples, t.rate_Hz, {detail::gliding(t, glide.decay_per_s, glide.relative).model.parts, t.fit.model.centre_Hz, glide});
-    t.fit = one_or_two_lines(t.samples, t.rate_Hz, one, tolerance_Hz,
-                             detail::filled_with_noise(t.window, t.rate_Hz));
+    const line_fit one = fit_line(
+        t.samples, t.rate_Hz, {detail::gliding(t, glide.decay_per_s, glide.relative).model.parts, t.fit.model.centre_Hz, glide});
+    t.fit = one_or_two_lines(t.samples, t.rate_Hz, one, tolerance_Hz, detail::filled_with_noise(t.window, t.rate_Hz));
   }
 }
 

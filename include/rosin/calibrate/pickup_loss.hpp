@@ -52,7 +52,8 @@ struct loss_estimate {
 namespace detail {
 
 /// E[(x - about)(x - about)'] of a normal distribution (mean, covariance) cut off to x >= 0.
-inline Eigen::MatrixXd moments_above_zero(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& about) {
+inline Eigen::MatrixXd moments_above_zero(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
+                                          const Eigen::VectorXd& about) {
   const Eigen::Index n = mean.size();
   const Eigen::VectorXd unit = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
   Eigen::MatrixXd correlation = unit.cwiseInverse().asDiagonal() * covariance * unit.cwiseInverse().asDiagonal();
@@ -84,7 +85,9 @@ struct loss_model {
   const std::vector<measured_decay>& data;
   std::vector<int> terms;
 
-  [[nodiscard]] static double term(int which, double f) { return std::numbers::pi * f * (which == 0 ? 1 : which == 1 ? f : 1 / std::sqrt(f)); }
+  [[nodiscard]] static double term(int which, double f) {
+    return std::numbers::pi * f * (which == 0 ? 1 : which == 1 ? f : 1 / std::sqrt(f));
+  }
 
   void operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) const {
     for (Eigen::Index i = 0; i < y.size(); ++i)

@@ -48,7 +48,8 @@ inline robust_data pitch_data(const std::vector<numbered_frequency>& partials, b
 }  // namespace detail
 
 /// value: f0 (Hz), b. Precondition: at least two partials, f0 > 0 within a per cent or so.
-[[nodiscard]] inline robust_fit fit_pitch(const std::vector<numbered_frequency>& partials, double fundamental_Hz, double inharmonicity) {
+[[nodiscard]] inline robust_fit fit_pitch(const std::vector<numbered_frequency>& partials, double fundamental_Hz,
+                                          double inharmonicity) {
   const auto model = [&](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) {
     for (Eigen::Index i = 0; i < y.size(); ++i) {
       const double n = partials[static_cast<std::size_t>(i)].number;

@@ -5,10 +5,11 @@
 //
 //     y_i = model_i(theta) + e_i,     var e_i = v_i + (scatter * shape_i)^2
 //
-// v_i is known, the scatter is not: partials of a real string are shifted by its supports, one by one. Fit and scatter are Huber's
-// (location with 1.5 sigma, "proposal 2" for the scale), in the end with a cut at 5 sigma; with less than eight numbers to spare
-// nothing can be called an outlier, and it is 3 sigma and no cut. The covariance is Huber's sandwich, psi^2 / (mean psi')^2 (J' V^-1 J)^-1, never less than the plain one, widened for few degrees of freedom
-// (Student) and for residuals that hang together from one partial to the next: (1 + r)/(1 - r), r their correlation.
+// v_i is known, the scatter is not: partials of a real string are shifted by its supports, one by one. Fit and scatter are
+// Huber's (location with 1.5 sigma, "proposal 2" for the scale), in the end with a cut at 5 sigma; with less than eight numbers
+// to spare nothing can be called an outlier, and it is 3 sigma and no cut. The covariance is Huber's sandwich, psi^2 / (mean
+// psi')^2 (J' V^-1 J)^-1, never less than the plain one, widened for few degrees of freedom (Student) and for residuals that hang
+// together from one partial to the next: (1 + r)/(1 - r), r their correlation.
 //
 #pragma once
 
@@ -26,12 +27,12 @@ namespace rosin {
 struct robust_fit {
   Eigen::VectorXd value;
   Eigen::MatrixXd covariance;
-  Eigen::VectorXd weight;       ///< 0 ... 1 for each measurement
-  Eigen::MatrixXd gain;         ///< d value / d measurement
-  double scatter = 0;           ///< in the unit of y / shape, beyond the errors given
-  double cost = 0;              ///< minus log likelihood, to compare shapes of the scatter; less is better
-  int used = 0;                 ///< measurements with weight
-  bool in_proportion = false;   ///< set by who chose between shapes of the scatter (fit_pitch)
+  Eigen::VectorXd weight;      ///< 0 ... 1 for each measurement
+  Eigen::MatrixXd gain;        ///< d value / d measurement
+  double scatter = 0;          ///< in the unit of y / shape, beyond the errors given
+  double cost = 0;             ///< minus log likelihood, to compare shapes of the scatter; less is better
+  int used = 0;                ///< measurements with weight
+  bool in_proportion = false;  ///< set by who chose between shapes of the scatter (fit_pitch)
 };
 
 /// Measurements, their variances, and how the scatter goes with them.
@@ -58,13 +59,15 @@ struct huber_limits {
   [[nodiscard]] double weight(double u) const { return std::abs(u) <= bend ? 1.0 : std::abs(u) > cut ? 0.0 : bend / std::abs(u); }
   /// E min(z^2, bend^2) of a normal z.
   [[nodiscard]] double usual_square() const {
-    const double inside = std::erf(bend / std::numbers::sqrt2), density = std::exp(-bend * bend / 2) / std::sqrt(2 * std::numbers::pi);
+    const double inside = std::erf(bend / std::numbers::sqrt2),
+                 density = std::exp(-bend * bend / 2) / std::sqrt(2 * std::numbers::pi);
     return inside - 2 * bend * density + bend * bend * (1 - inside);
   }
 };
 
 /// The scatter at which the bounded squares of residual / sigma add up to what a normal distribution would give.
-inline double scatter_of(const robust_data& d, const Eigen::VectorXd& residual, Eigen::Index parameters, const huber_limits& limits) {
+inline double scatter_of(const robust_data& d, const Eigen::VectorXd& residual, Eigen::Index parameters,
+                         const huber_limits& limits) {
   const double wanted = limits.usual_square() * std::max(static_cast<double>(d.y.size() - parameters), 0.5);
   const auto excess = [&](double s) {
     return residual.cwiseQuotient(spread_of(d, s)).cwiseAbs2().cwiseMin(limits.bend * limits.bend).sum() - wanted;
@@ -128,7 +131,8 @@ template <class Model>
   const Eigen::VectorXd size = scaled.colwise().norm().transpose().cwiseMax(1e-300);
   const Eigen::MatrixXd unit = scaled * size.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
-  fit.covariance = detail::sandwich(u, p, limits) * (size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal());
+  fit.covariance =
+      detail::sandwich(u, p, limits) * (size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal());
   fit.used = static_cast<int>((fit.weight.array() > 0).count());
   for (Eigen::Index i = 0; i < n; ++i) {
     const double a = std::min(std::abs(u[i]), limits.cut);

@@ -32,9 +32,11 @@ struct pickup_string_facts {
 /// What follows from facts and sound.
 struct string_in_SI {
   std::optional<measured_value> tension_N, linear_density_kg_m, impedance_Ns_m;
-  std::optional<measured_value> bending_stiffness_Nm2;   ///< from the inharmonicity heard
-  std::optional<measured_value> expected_inharmonicity;  ///< of a plain round wire, from length, diameter, density, modulus and pitch
-  std::optional<measured_value> diameter_from_sound_m;   ///< of a plain round wire, from length, density, modulus and what is heard
+  std::optional<measured_value> bending_stiffness_Nm2;  ///< from the inharmonicity heard
+  /// of a plain round wire, from length, diameter, density, modulus and pitch
+  std::optional<measured_value> expected_inharmonicity;
+  /// of a plain round wire, from length, density, modulus and what is heard
+  std::optional<measured_value> diameter_from_sound_m;
 };
 
 namespace detail {
@@ -61,7 +63,8 @@ inline std::optional<measured_value> combined(const std::vector<std::optional<me
 
 }  // namespace detail
 
-[[nodiscard]] inline string_in_SI string_from(const pickup_string_facts& facts, measured_value fundamental_Hz, measured_value inharmonicity) {
+[[nodiscard]] inline string_in_SI string_from(const pickup_string_facts& facts, measured_value fundamental_Hz,
+                                              measured_value inharmonicity) {
   using values = std::vector<double>;
   using std::numbers::pi;
   const std::optional<measured_value> f0 = fundamental_Hz, b = inharmonicity;
@@ -70,14 +73,17 @@ inline std::optional<measured_value> combined(const std::vector<std::optional<me
   string_in_SI s;
   if (facts.tension_N) {
     s.tension_N = facts.tension_N;
-    s.linear_density_kg_m = detail::combined({s.tension_N, facts.length_m, f0}, [=](const values& v) { return v[0] / wave(v[1], v[2]); });
-    s.impedance_Ns_m = detail::combined({s.tension_N, facts.length_m, f0}, [](const values& v) { return v[0] / (2 * v[1] * v[2]); });
+    s.linear_density_kg_m =
+        detail::combined({s.tension_N, facts.length_m, f0}, [=](const values& v) { return v[0] / wave(v[1], v[2]); });
+    s.impedance_Ns_m =
+        detail::combined({s.tension_N, facts.length_m, f0}, [](const values& v) { return v[0] / (2 * v[1] * v[2]); });
     s.bending_stiffness_Nm2 =
         detail::combined({s.tension_N, facts.length_m, b}, [=](const values& v) { return v[2] * v[0] * square(v[1] / pi); });
   } else {
     s.linear_density_kg_m = facts.linear_density_kg_m
                                 ? facts.linear_density_kg_m
-                                : detail::combined({facts.density_kg_m3, facts.diameter_m}, [=](const values& v) { return v[0] * pi / 4 * square(v[1]); });
+                                : detail::combined({facts.density_kg_m3, facts.diameter_m},
+                                                   [=](const values& v) { return v[0] * pi / 4 * square(v[1]); });
     const auto& m = s.linear_density_kg_m;
     s.tension_N = detail::combined({m, facts.length_m, f0}, [=](const values& v) { return v[0] * wave(v[1], v[2]); });
     s.impedance_Ns_m = detail::combined({m, facts.length_m, f0}, [](const values& v) { return v[0] * 2 * v[1] * v[2]; });
@@ -85,14 +91,12 @@ inline std::optional<measured_value> combined(const std::vector<std::optional<me
         {m, facts.length_m, f0, b}, [=](const values& v) { return v[3] * v[0] * wave(v[1], v[2]) * square(v[1] / pi); });
   }
   s.expected_inharmonicity =
-      detail::combined({facts.youngs_modulus_Pa, facts.diameter_m, facts.density_kg_m3, facts.length_m, f0}, [=](const values& v) {
-        return square(pi * v[1] / (8 * v[3] * v[3] * v[4])) * v[0] / v[2];
-      });
+      detail::combined({facts.youngs_modulus_Pa, facts.diameter_m, facts.density_kg_m3, facts.length_m, f0},
+                       [=](const values& v) { return square(pi * v[1] / (8 * v[3] * v[3] * v[4])) * v[0] / v[2]; });
   if (inharmonicity.value > 0)
     s.diameter_from_sound_m =
-        detail::combined({facts.length_m, f0, facts.density_kg_m3, b, facts.youngs_modulus_Pa}, [=](const values& v) {
-          return 8 * v[0] * v[0] * v[1] / pi * std::sqrt(v[2] * v[3] / v[4]);
-        });
+        detail::combined({facts.length_m, f0, facts.density_kg_m3, b, facts.youngs_modulus_Pa},
+                         [=](const values& v) { return 8 * v[0] * v[0] * v[1] / pi * std::sqrt(v[2] * v[3] / v[4]); });
   return s;
 }
 

@@ -6,8 +6,8 @@
 //
 //     recording = gain * (pluck model) + offset + white noise, inside a band
 //
-// Levenberg-Marquardt on the closed form of pluck_model.hpp. The pitch is known to a per cent at first and to a part in 1e8 in the
-// end, so the fit starts with the first partials of the first periods and takes in more as it grows sure (stages()).
+// Levenberg-Marquardt on the closed form of pluck_model.hpp. The pitch is known to a per cent at first and to a part in 1e8 in
+// the end, so the fit starts with the first partials of the first periods and takes in more as it grows sure (stages()).
 // Gains and strengths only enter as products; nominal values with their tolerances decide between them (priors), and
 // what that leaves open is one common scale, reported apart.
 //
@@ -26,12 +26,12 @@ struct pluck_fit_result {
   pluck_layout layout;
   Eigen::VectorXd value, sd;
   Eigen::MatrixXd covariance;
-  std::array<double, 2> noise_N{};       ///< white noise per channel, rms over the whole band to half the sampling rate
-  double misfit = 1;                     ///< power at the partials against what noise explains; 1: the model is complete
-  std::vector<double> residual_ratio;    ///< per take: rms(recorded - model) / rms(recorded), inside the band
-  std::vector<std::string> unidentified; ///< parameters that these plucks cannot tell
+  std::array<double, 2> noise_N{};        ///< white noise per channel, rms over the whole band to half the sampling rate
+  double misfit = 1;                      ///< power at the partials against what noise explains; 1: the model is complete
+  std::vector<double> residual_ratio;     ///< per take: rms(recorded - model) / rms(recorded), inside the band
+  std::vector<std::string> unidentified;  ///< parameters that these plucks cannot tell
   band limits{0, 0};
-  double horizon_periods = 0;            ///< how much of the decay was used; all of it where the model holds
+  double horizon_periods = 0;  ///< how much of the decay was used; all of it where the model holds
   int iterations = 0;
   bool converged = false;
 
@@ -63,7 +63,7 @@ bool descend(const Problem& problem, const Layout& layout, const Eigen::VectorXd
     const Eigen::VectorXd step = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * now.gradient);
     if (!step.allFinite()) return false;
     const Eigen::VectorXd tried = value + step;
-    const bool sane = layout.plausible(tried, start, problem.highest_Hz());
+    const bool sane = layout.plausible(tried, start, problem.limits().stop_Hz);
     normal_equations next = sane ? problem.linearise(tried) : now;
     const double gain = sane ? now.cost - next.cost : -1.0;
     if (std::isfinite(next.cost) && gain >= 0) {
@@ -106,11 +106,12 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
   std::array<double, 2> noise{1e-2, 1e-2};
   for (const double within : {400.0, 1e9})  // the second descent starts sure of the pitch
     if (periods > 400 || within > 400) {
-      const pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, options.most_partials,
-                                  std::min(periods, within), true, noise);
+      const pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value,
+                                  options.most_partials, std::min(periods, within), true, noise);
       result.converged = descend(problem, result.layout, begin, result.value, 25, 1e-2, result.iterations);
     }
-  pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, options.most_partials, periods, true, noise);
+  pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, options.most_partials, periods,
+                        true, noise);
   for (int pass = 0; pass < 2; ++pass) {
     noise = problem.assess(result.value).noise;
     problem.set_noise(noise);
@@ -129,8 +130,8 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
 
 }  // namespace detail
 
-/// Fits `takes` together. Fails, with the take and the reason, where no release is found or the string does not ring as declared, that is,
-/// where more than `most_residual` of the signal (rms) is left.
+/// Fits `takes` together. Fails, with the take and the reason, where no release is found or the string does not ring as declared,
+/// that is, where more than `most_residual` of the signal (rms) is left.
 [[nodiscard]] inline outcome<pluck_fit_result> fit_plucks(const std::vector<pluck_take>& takes, const pluck_guess& guess,
                                                           const pluck_options& options = {}, double most_residual = 0.6) {
   outcome<pluck_start> start = find_start(takes, guess);
@@ -142,7 +143,8 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
 
   const Eigen::VectorXd begin = result.value;
   for (const detail::stage& s : detail::approach) {
-    const pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, s.partials, s.periods, false, {1e-2, 1e-2});
+    const pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, s.partials, s.periods,
+                                false, {1e-2, 1e-2});
     detail::descend(problem, result.layout, begin, result.value, 12, 1e-2, result.iterations);
   }
   const Eigen::VectorXd near = result.value;

@@ -29,32 +29,33 @@ struct pluck_take {
   std::string name{};
   double rate_Hz = 0;
   std::array<std::vector<double>, 2> force_N{};  ///< near, far; equally long
-  double strength_N = 1;                       ///< nominal breaking force
-  double strength_tolerance = 0.03;            ///< relative, a limit: two standard deviations
-  double position = 0.5;                       ///< declared, from the near end
+  double strength_N = 1;                         ///< nominal breaking force
+  double strength_tolerance = 0.03;              ///< relative, a limit: two standard deviations
+  double position = 0.5;                         ///< declared, from the near end
 };
 
 /// What is known beforehand.
 struct pluck_guess {
-  double fundamental_Hz = 0;                          ///< within 2 %
-  double inharmonicity = 0;                           ///< within 60 %; 0: unknown
+  double fundamental_Hz = 0;  ///< within 2 %
+  double inharmonicity = 0;   ///< within 60 %; 0: unknown
   double quality = 1000;
-  std::array<double, 2> gain_tolerance{0.05, 0.05};   ///< relative limits
-  std::array<double, 2> ac_coupled_Hz{0, 0};          ///< 0: DC coupled
-  std::array<modal_termination, 2> ends{};            ///< terminations that are known to move; fit_plucks() takes them for rigid, fit_ends() and a diagnosis do not
+  std::array<double, 2> gain_tolerance{0.05, 0.05};  ///< relative limits
+  std::array<double, 2> ac_coupled_Hz{0, 0};         ///< 0: DC coupled
+  /// terminations that are known to move; fit_plucks() takes them for rigid, fit_ends() and a diagnosis do not
+  std::array<modal_termination, 2> ends{};
 
   [[nodiscard]] bool has_ends() const { return !ends[0].modes.empty() || !ends[1].modes.empty(); }
 };
 
 /// Which nuisances are free, and which band is used.
 struct pluck_options {
-  bool stiffness = true;         ///< false: the string is taken for ideal
-  bool internal_loss = true;     ///< 1/Q may grow with frequency
+  bool stiffness = true;      ///< false: the string is taken for ideal
+  bool internal_loss = true;  ///< 1/Q may grow with frequency
   bool air_loss = false;
-  bool convention = true;        ///< psi is fitted
-  double pass_fraction = 0.34;   ///< edges of the band, of the sampling rate: below where converters begin to cut off
+  bool convention = true;       ///< psi is fitted
+  double pass_fraction = 0.34;  ///< edges of the band, of the sampling rate: below where converters begin to cut off
   double stop_fraction = 0.42;
-  int most_partials = 160;       ///< a longer, lower string is fitted over fewer hertz
+  int most_partials = 160;  ///< a longer, lower string is fitted over fewer hertz
 
   [[nodiscard]] band limits_for(double rate_Hz, double highest_Hz = 1e300) const noexcept {
     const double stop = std::min(stop_fraction * rate_Hz, highest_Hz);
@@ -65,12 +66,24 @@ struct pluck_options {
 /// Where each parameter stands in the vectors and matrices of the fit.
 class pluck_layout {
 public:
-  enum shared { fundamental, inharmonicity, inverse_quality, internal_loss, air_loss, convention, gain_near, gain_far, first_position };
+  enum shared {
+    fundamental,
+    inharmonicity,
+    inverse_quality,
+    internal_loss,
+    air_loss,
+    convention,
+    gain_near,
+    gain_far,
+    first_position
+  };
   enum per_take { release, strength, offset_near, offset_far, take_size };
 
   pluck_layout() = default;
   /// `ends`: for fits whose model has ends (scene_plucks.hpp).
-  pluck_layout(const std::vector<pluck_take>& takes, const pluck_options& options, const std::array<modal_termination, 2>& ends = {}) : options_{options}, ends_{ends} {
+  pluck_layout(const std::vector<pluck_take>& takes, const pluck_options& options,
+               const std::array<modal_termination, 2>& ends = {})
+      : options_{options}, ends_{ends} {
     for (const pluck_take& take : takes) {
       auto found = std::find(positions_.begin(), positions_.end(), take.position);
       group_.push_back(found - positions_.begin());
@@ -79,7 +92,9 @@ public:
     }
   }
 
-  [[nodiscard]] Eigen::Index size() const { return first_of_ends() + 3 * static_cast<Eigen::Index>(ends_[0].modes.size() + ends_[1].modes.size()); }
+  [[nodiscard]] Eigen::Index size() const {
+    return first_of_ends() + 3 * static_cast<Eigen::Index>(ends_[0].modes.size() + ends_[1].modes.size());
+  }
   [[nodiscard]] Eigen::Index first_of_ends() const { return at(group_.size(), 0); }
   [[nodiscard]] bool has_ends() const { return size() > first_of_ends(); }
   [[nodiscard]] std::size_t takes() const { return group_.size(); }
@@ -100,8 +115,8 @@ public:
   }
 
   [[nodiscard]] std::string name(Eigen::Index p) const {
-    static constexpr std::array names{"fundamental_Hz", "inharmonicity",  "inverse_quality", "loss_internal_s",
-                                      "loss_air_sqrt_Hz", "convention", "ln_gain_near", "ln_gain_far"};
+    static constexpr std::array names{"fundamental_Hz",   "inharmonicity", "inverse_quality", "loss_internal_s",
+                                      "loss_air_sqrt_Hz", "convention",    "ln_gain_near",    "ln_gain_far"};
     static constexpr std::array mine{"release_s", "ln_strength", "offset_near_N", "offset_far_N"};
     if (p < first_position) return names[static_cast<std::size_t>(p)];
     if (p < at(0, 0)) return positions_.size() == 1 ? "position" : "position " + std::to_string(p - first_position + 1);
@@ -117,12 +132,15 @@ public:
   [[nodiscard]] double release_s(const Eigen::VectorXd& v, std::size_t take) const { return v[at(take, release)]; }
 
   /// Gain of a channel, recorded / true.
-  [[nodiscard]] static double gain(const Eigen::VectorXd& v, std::size_t channel) { return std::exp(v[gain_near + static_cast<int>(channel)]); }
+  [[nodiscard]] static double gain(const Eigen::VectorXd& v, std::size_t channel) {
+    return std::exp(v[gain_near + static_cast<int>(channel)]);
+  }
 
-  /// What is slow in a channel from `begin_s` on: its offset, the held string before the release (`held`: recorded newtons), and what a
-  /// high-pass makes of both, H(s) = s / (s + w_c): the offset dies away, the step of the release leaves -held exp(-w_c t).
-  [[nodiscard]] damped_line slow_line(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s, std::size_t channel,
-                                      double corner_Hz, double held) const {
+  /// What is slow in a channel from `begin_s` on: its offset, the held string before the release (`held`: recorded newtons), and
+  /// what a high-pass makes of both, H(s) = s / (s + w_c): the offset dies away, the step of the release leaves -held exp(-w_c
+  /// t).
+  [[nodiscard]] damped_line slow_line(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
+                                      std::size_t channel, double corner_Hz, double held) const {
     const double corner = 2 * std::numbers::pi * corner_Hz, offset = v[at(take, offset_near + static_cast<int>(channel))];
     damped_line slow{-corner, {}};
     slow.residue[channel] = offset * std::exp(-corner * begin_s);
@@ -164,7 +182,8 @@ public:
   [[nodiscard]] knowledge prior(Eigen::Index p, const std::vector<pluck_take>& takes, const pluck_guess& guess) const {
     if (p == gain_near || p == gain_far) return {0, guess.gain_tolerance[static_cast<std::size_t>(p - gain_near)] / 2};
     if (p == convention) return {0, 1.5};  // conventions lie between -1 and 1
-    if (p == inharmonicity && options_.stiffness && guess.inharmonicity > 0) return {guess.inharmonicity, 0.3 * guess.inharmonicity};  // for what does not tell it yet: short looks, few partials
+    if (p == inharmonicity && options_.stiffness && guess.inharmonicity > 0)
+      return {guess.inharmonicity, 0.3 * guess.inharmonicity};  // for what does not tell it yet: short looks, few partials
     if (p >= first_of_ends()) return {0, end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3] / 2};
     if (p < at(0, 0) || !is_scale(p)) return {0, 0};
     const pluck_take& take = takes[static_cast<std::size_t>(p - at(0, 0)) / take_size];
@@ -206,13 +225,15 @@ public:
     return true;
   }
 
-  static constexpr std::array end_doubt{0.01, 0.2, 0.1};  ///< how well a declared mode is known: frequency, q, mass, relative limits; twice that is another mode
+  /// how well a declared mode is known: frequency, q, mass, relative limits; twice that is another mode
+  static constexpr std::array end_doubt{0.01, 0.2, 0.1};
 
 private:
   [[nodiscard]] std::string name_of_end(std::size_t i) const {
     static constexpr std::array of_mode{"ln_frequency", "ln_q", "ln_per_mass"};
     const std::size_t mode = i / 3, near = ends_[0].modes.size();
-    return std::string(of_mode[i % 3]) + " of " + (mode < near ? "near" : "far") + " end's mode " + std::to_string(mode < near ? mode + 1 : mode - near + 1);
+    return std::string(of_mode[i % 3]) + " of " + (mode < near ? "near" : "far") + " end's mode " +
+           std::to_string(mode < near ? mode + 1 : mode - near + 1);
   }
 
   pluck_options options_{};
@@ -227,7 +248,8 @@ template <class Layout>
 [[nodiscard]] Eigen::MatrixXd invert_free(const Layout& layout, const Eigen::MatrixXd& hessian) {
   const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  Eigen::MatrixXd inverse = scale.asDiagonal() * Eigen::MatrixXd(scaled.completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
+  Eigen::MatrixXd inverse =
+      scale.asDiagonal() * Eigen::MatrixXd(scaled.completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
   for (Eigen::Index p = 0; p < layout.size(); ++p)
     if (!layout.is_free(p)) {
       inverse.row(p).setZero();

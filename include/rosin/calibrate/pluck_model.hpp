@@ -14,10 +14,12 @@
 // That this is the inverse transform of sin(k x)/(G sin(k L)) is checked in the tests.
 //
 // psi is what conventions of damping differ in, all else being equal: -1 for a viscous force on each mode (no force at the
-// ends from it), +1 where the loss is in the elastic stress (and is felt by the ends). It is a nuisance of order 1/Q and is fitted.
+// ends from it), +1 where the loss is in the elastic stress (and is felt by the ends). It is a nuisance of order 1/Q and is
+// fitted.
 //
 // A band-limited recording sees partial n with the weight W(s_n / (2 pi i)): what a filter does to a line that decays is its
-// response at a complex frequency, which on the band's flank is a turn in phase. Around t0 itself nothing has arrived at the ends yet.
+// response at a complex frequency, which on the band's flank is a turn in phase. Around t0 itself nothing has arrived at the ends
+// yet.
 //
 #pragma once
 
@@ -37,7 +39,7 @@ struct ringing_string {
   double fundamental_Hz = 0;  ///< c / (2 L), without stiffness
   double inharmonicity = 0;   ///< b = pi^2 B / (T L^2)
   loss_law loss{};
-  double convention = -1;     ///< psi
+  double convention = -1;  ///< psi
 
   /// Frequency of partial n >= 1, without damping.
   [[nodiscard]] double partial_Hz(int n) const noexcept {
@@ -50,8 +52,8 @@ struct ringing_string {
   }
 };
 
-/// Forces on {near, far} before the release, per newton of F. `longer`: by how much more string either end counts that yields (less where it holds the
-/// string against turning), fractions of the length.
+/// Forces on {near, far} before the release, per newton of F. `longer`: by how much more string either end counts that yields
+/// (less where it holds the string against turning), fractions of the length.
 [[nodiscard]] inline std::array<double, 2> static_forces(double position, const std::array<double, 2>& longer = {}) noexcept {
   const double far = (position + longer[0]) / (1 + longer[0] + longer[1]);
   return {1 - far, far};

@@ -5,8 +5,8 @@
 // the release and after it, each a sum of damped lines; a guard of half a filter's length around the release is left out.
 // Poles and residues are differentiated numerically (they cost nothing); the sums over samples are done by damped_lines.hpp.
 //
-// What rings is the model's affair: `plain_plucks` is the string between pinned ends, and whatever else comes down to damped lines
-// (diagnosis) is fitted by the same code.
+// What rings is the model's affair: `plain_plucks` is the string between pinned ends, and whatever else comes down to damped
+// lines (diagnosis) is fitted by the same code.
 //
 #pragma once
 
@@ -17,8 +17,8 @@
 
 namespace rosin {
 
-/// Model of a set of plucks: which parameters there are, and the lines that a take consists of from `begin_s` on, before its release
-/// (part 0) or after it (part 1), seen through a band.
+/// Model of a set of plucks: which parameters there are, and the lines that a take consists of from `begin_s` on, before its
+/// release (part 0) or after it (part 1), seen through a band.
 template <class M>
 concept LineModel = requires(const M& m, const Eigen::VectorXd& v, Eigen::Index p, std::size_t take, const band& limits) {
   { m.size() } -> std::convertible_to<Eigen::Index>;
@@ -46,7 +46,8 @@ struct plain_plucks : pluck_layout {
       for (damped_line& line : out) line.residue[c] *= scale * (corner > 0 ? line.pole / (line.pole + corner) : 1.0);
     }
     for (std::size_t c = 0; c < 2; ++c)
-      out.push_back(slow_line(v, take, part, begin_s, c, ac_coupled_Hz[c], newtons * gain(v, c) * static_forces(v[position(take)])[c]));
+      out.push_back(
+          slow_line(v, take, part, begin_s, c, ac_coupled_Hz[c], newtons * gain(v, c) * static_forces(v[position(take)])[c]));
     return out;
   }
 };
@@ -71,9 +72,9 @@ struct assessment {
 template <LineModel Model>
 class line_problem {
 public:
-  line_problem(const std::vector<pluck_take>& takes, const Model& model, const pluck_options& options,
-               const pluck_guess& guess, const Eigen::VectorXd& value, int partials, double periods, bool filtered,
-               std::array<double, 2> noise, const band_kernels& kernels = {})
+  line_problem(const std::vector<pluck_take>& takes, const Model& model, const pluck_options& options, const pluck_guess& guess,
+               const Eigen::VectorXd& value, int partials, double periods, bool filtered, std::array<double, 2> noise,
+               const band_kernels& kernels = {})
       : model_{model}, noise_{noise}, partials_{std::min(partials, options.most_partials)} {
     for (Eigen::Index p = 0; p < model.size(); ++p) prior_.push_back(model.prior(p, takes, guess));
     for (std::size_t i = 0; i < takes.size(); ++i) {
@@ -86,9 +87,10 @@ public:
       const int guard = std::max(reach, static_cast<int>(2.5 / (options.stop_fraction - options.pass_fraction)));
       const double release = model.release_s(value, i) * rate;
       const auto length = static_cast<int>(takes[i].force_N[0].size());
-      const int edge = reach, end = static_cast<int>(std::min<double>(length - edge, release + periods * rate / model.string(value).fundamental_Hz));
+      const double last = release + periods * rate / model.string(value).fundamental_Hz;
+      const int end = static_cast<int>(std::min<double>(length - reach, last));
       const int before = static_cast<int>(std::floor(release)) - guard, after = static_cast<int>(std::ceil(release)) + guard;
-      takes_.push_back({rate, {cut(takes[i], kernel, edge, before), cut(takes[i], kernel, std::max(after, edge), end)}});
+      takes_.push_back({rate, {cut(takes[i], kernel, reach, before), cut(takes[i], kernel, std::max(after, reach), end)}});
     }
   }
 
@@ -105,7 +107,6 @@ public:
     std::array<double, 2> power{}, signal{};
   };
 
-  [[nodiscard]] double highest_Hz() const { return limits_.stop_Hz; }
   [[nodiscard]] const band& limits() const { return limits_; }
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] int partials() const { return partials_; }
@@ -118,7 +119,7 @@ public:
   }
   [[nodiscard]] projection project(const stretch& s, double rate_Hz, const std::vector<damped_line>& lines) const;
   [[nodiscard]] std::array<Eigen::MatrixXd, 2> sensitivities(const Eigen::VectorXd& v, std::size_t take, std::size_t part,
-                                                            const std::vector<damped_line>& at) const;
+                                                             const std::vector<damped_line>& at) const;
   void set_noise(std::array<double, 2> noise) { noise_ = noise; }
 
   [[nodiscard]] normal_equations linearise(const Eigen::VectorXd& value) const;
@@ -138,10 +139,12 @@ private:
 
   static stretch cut(const pluck_take& take, const fir& kernel, int begin, int end) {
     stretch s{begin / take.rate_Hz, {}};
-    const Eigen::VectorXd taps = Eigen::VectorXd::Map(kernel.taps.data(), static_cast<Eigen::Index>(kernel.taps.size())).reverse();
+    const Eigen::VectorXd taps =
+        Eigen::VectorXd::Map(kernel.taps.data(), static_cast<Eigen::Index>(kernel.taps.size())).reverse();
     for (std::size_t c = 0; c < 2; ++c) {
       s.data[c].resize(std::max(0, end - begin));
-      for (int i = begin; i < end; ++i) s.data[c][i - begin] = taps.dot(Eigen::VectorXd::Map(take.force_N[c].data() + (i - kernel.last()), taps.size()));
+      for (int i = begin; i < end; ++i)
+        s.data[c][i - begin] = taps.dot(Eigen::VectorXd::Map(take.force_N[c].data() + (i - kernel.last()), taps.size()));
     }
     return s;
   }
@@ -156,7 +159,7 @@ private:
 
 template <LineModel Model>
 typename line_problem<Model>::projection line_problem<Model>::project(const stretch& s, double rate_Hz,
-                                                                           const std::vector<damped_line>& lines) const {
+                                                                      const std::vector<damped_line>& lines) const {
   const line_runner run(lines, 1 / rate_Hz);
   projection out{-run.sum(lines, s.count()), {}, {}, {}};
   for (std::size_t c = 0; c < 2; ++c) {
@@ -172,7 +175,7 @@ typename line_problem<Model>::projection line_problem<Model>::project(const stre
 /// d model / d parameter in the basis of damped_lines.hpp, per channel: P x 4N. Central differences of poles and residues.
 template <LineModel Model>
 std::array<Eigen::MatrixXd, 2> line_problem<Model>::sensitivities(const Eigen::VectorXd& v, std::size_t take, std::size_t part,
-                                                                   const std::vector<damped_line>& at) const {
+                                                                  const std::vector<damped_line>& at) const {
   const auto N = static_cast<Eigen::Index>(at.size());
   std::array<Eigen::MatrixXd, 2> out{Eigen::MatrixXd::Zero(model_.size(), 4 * N), Eigen::MatrixXd::Zero(model_.size(), 4 * N)};
   for (Eigen::Index p = 0; p < model_.size(); ++p) {
@@ -202,7 +205,8 @@ void line_problem<Model>::each_stretch(const Eigen::VectorXd& v, Visit&& visit) 
     for (std::size_t part = 0; part < 2; ++part)
       if (takes_[t].part[part].count() > 0) {
         const std::vector<damped_line> now = lines(v, t, part);
-        visit(t, takes_[t].part[part], now, line_gram(now, 1 / takes_[t].rate_Hz, takes_[t].part[part].count()), sensitivities(v, t, part, now));
+        visit(t, takes_[t].part[part], now, line_gram(now, 1 / takes_[t].rate_Hz, takes_[t].part[part].count()),
+              sensitivities(v, t, part, now));
       }
 }
 
@@ -217,7 +221,7 @@ normal_equations line_problem<Model>::linearise(const Eigen::VectorXd& v) const 
     const projection p = project(s, takes_[t].rate_Hz, now);
     for (std::size_t c = 0; c < 2; ++c) {
       const double sure = 1 / (noise_[c] * noise_[c]);
-      const Eigen::MatrixXd to = all[c](rows, Eigen::all), of_gram = to * gram, flat = p.onto_lines[c].transpose();  // flat: 4 x N, line by line
+      const Eigen::MatrixXd to = all[c](rows, Eigen::all), of_gram = to * gram, flat = p.onto_lines[c].transpose();
       eq.cost += sure * p.power[c];
       eq.gradient(rows) += sure * (to * Eigen::Map<const Eigen::VectorXd>(flat.data(), flat.size()));
       eq.hessian(rows, rows) += sure * (of_gram * to.transpose());
@@ -240,7 +244,8 @@ Eigen::MatrixXd line_problem<Model>::scatter(const Eigen::VectorXd& v) const {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(model_.size(), model_.size());
   each_stretch(v, [&](std::size_t, const stretch&, const auto& now, const Eigen::MatrixXd& gram, const auto& to) {
     Eigen::VectorXd weight(4 * static_cast<Eigen::Index>(now.size()));
-    for (std::size_t n = 0; n < now.size(); ++n) weight.segment<4>(4 * static_cast<Eigen::Index>(n)).setConstant(limits_(now[n].pole.imag() / (2 * std::numbers::pi)));
+    for (std::size_t n = 0; n < now.size(); ++n)
+      weight.segment<4>(4 * static_cast<Eigen::Index>(n)).setConstant(limits_(now[n].pole.imag() / (2 * std::numbers::pi)));
     for (std::size_t c = 0; c < 2; ++c) {
       const Eigen::MatrixXd filtered = to[c] * weight.asDiagonal();
       sum += filtered * gram * filtered.transpose() / (noise_[c] * noise_[c]);
@@ -267,8 +272,7 @@ assessment line_problem<Model>::assess(const Eigen::VectorXd& v) const {
       const auto N = static_cast<Eigen::Index>(now.size());
       const Eigen::LDLT<Eigen::MatrixXd> gram(line_gram(now, 1 / takes_[t].rate_Hz, s.count()));
       for (std::size_t c = 0; c < 2; ++c) {
-        residual += p.power[c];
-        signal += p.signal[c];
+        residual += p.power[c], signal += p.signal[c];
         power[c] += p.power[c];
         samples[c] += static_cast<double>(s.count()) * mean_square;
         if (N == 0) continue;
@@ -284,8 +288,7 @@ assessment line_problem<Model>::assess(const Eigen::VectorXd& v) const {
   for (std::size_t c = 0; c < 2; ++c) {
     const double variance = std::max(1e-300, (power[c] - captured[c]) / std::max(1.0, samples[c] - used[c]));
     out.noise[c] = std::sqrt(variance);
-    at_lines += captured[c] / variance;
-    expected += used[c];
+    at_lines += captured[c] / variance, expected += used[c];
   }
   out.dimensions = std::max(1.0, dimensions);
   out.misfit = expected > 0 ? at_lines / expected : 1;

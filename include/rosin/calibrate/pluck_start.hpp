@@ -33,7 +33,8 @@ inline double likest_lag(const std::vector<double>& x, std::size_t begin, double
   const auto from = static_cast<std::size_t>(std::max(1.0, first)), to = static_cast<std::size_t>(last) + 1;
   if (begin + 2 * to + 2 > x.size()) return 0;
   const std::size_t count = std::min<std::size_t>(x.size() - begin - to - 1, 20000);
-  const double mean = std::accumulate(x.begin() + static_cast<std::ptrdiff_t>(begin), x.end(), 0.0) / static_cast<double>(x.size() - begin);
+  const double mean =
+      std::accumulate(x.begin() + static_cast<std::ptrdiff_t>(begin), x.end(), 0.0) / static_cast<double>(x.size() - begin);
   const auto likeness = [&](std::size_t lag) {
     double sum = 0, power = 0;
     for (std::size_t i = begin; i < begin + count; ++i) {
@@ -87,7 +88,8 @@ inline first_step find_step(const std::vector<double>& x, double drop, std::size
     for (const auto* channel : {&near, &far})
       for (std::size_t i = 0; i < channel->size(); ++i)
         if (!std::isfinite((*channel)[i]))
-          return failure{take.name + ": " + (channel == &near ? "near" : "far") + ", sample " + std::to_string(i) + " is not a number"};
+          return failure{take.name + ": " + (channel == &near ? "near" : "far") + ", sample " + std::to_string(i) +
+                         " is not a number"};
     const auto lead = static_cast<std::size_t>(std::max(4.0, 0.05 * period));
     const auto one = detail::find_step(near, take.strength_N, lead), two = detail::find_step(far, take.strength_N, lead);
     if (!one.found || !two.found)

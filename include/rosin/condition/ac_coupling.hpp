@@ -33,8 +33,9 @@ void restore_ac_coupled(std::span<T> signal, double corner_Hz, double rate_Hz) n
   for (T& x : signal) x = static_cast<T>(static_cast<double>(x) - mean);
 }
 
-/// The other way about, in place: x, steady before it begins, through the high-pass, by the same rule, so that either undoes the other. (The
-/// simulated amplifier of simulate/converter.hpp steps exactly instead: what is undone is not to have been made by its own inverse.)
+/// The other way about, in place: x, steady before it begins, through the high-pass, by the same rule, so that either undoes the
+/// other. (The simulated amplifier of simulate/converter.hpp steps exactly instead: what is undone is not to have been made by
+/// its own inverse.)
 template <class T>
 void pass_ac_coupled(std::span<T> signal, double corner_Hz, double rate_Hz) noexcept {
   if (corner_Hz <= 0 || signal.empty()) return;

@@ -37,7 +37,8 @@ public:
   void process(std::span<const T> in, std::span<T> out) noexcept {
     forward_.forward(in.data(), bins_.data());
     const std::size_t shorter = std::min(from(), to());
-    if (shorter % 2 == 0 && from() != to()) bins_[shorter / 2] = to() > from() ? T(0.5) * bins_[shorter / 2].real() : T(2) * bins_[shorter / 2].real();
+    if (shorter % 2 == 0 && from() != to())
+      bins_[shorter / 2] = to() > from() ? T(0.5) * bins_[shorter / 2].real() : T(2) * bins_[shorter / 2].real();
     const T scale = static_cast<T>(static_cast<double>(to()) / static_cast<double>(from()));
     for (std::size_t k = 0; k <= shorter / 2; ++k) bins_[k] *= scale;
     std::fill(bins_.begin() + static_cast<std::ptrdiff_t>(shorter / 2 + 1), bins_.end(), std::complex<T>{});

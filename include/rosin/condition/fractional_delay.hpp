@@ -21,7 +21,8 @@ namespace rosin {
 /// Weights for the value `fraction` (0 ... 1) of a sample before the middle: taps / 2 samples on either side.
 template <class I, class T>
 concept Interpolator = (I::taps >= 2) && (I::taps % 2 == 0) && requires(T fraction) {
-  { I::weights(fraction) } noexcept -> std::same_as<std::array<T, I::taps>>;
+  { I::weights(fraction) }
+  noexcept->std::same_as<std::array<T, I::taps>>;
 };
 
 /// The polynomial of degree Taps - 1 through the samples: maximally flat at 0 Hz, and nothing but arithmetic.
@@ -53,7 +54,7 @@ struct delay_taps {
 /// The taps in T for a delay in samples, computed in the precision that the delay is given in. Below the
 /// interpolator's shortest delay: that one.
 template <class T, class I, std::floating_point Delay>
-  requires Interpolator<I, Delay>
+requires Interpolator<I, Delay>
 [[nodiscard]] constexpr delay_taps<T, I::taps> design_delay(Delay delay_samples) noexcept {
   constexpr std::size_t least = I::taps / 2 - 1;
   if (!(delay_samples > Delay(least))) delay_samples = Delay(least);
@@ -66,8 +67,7 @@ template <class T, class I, std::floating_point Delay>
 
 /// A stage. Holds Capacity samples twice over, so that the taps always lie in one piece: delays below Capacity - taps / 2.
 template <class T, class I, std::size_t Capacity>
-  requires(Capacity >= I::taps)
-class fractional_delay {
+requires(Capacity >= I::taps) class fractional_delay {
 public:
   using input_type = T;
   using output_type = T;

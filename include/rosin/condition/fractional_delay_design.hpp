@@ -112,8 +112,10 @@ struct delay_kernel {
 [[nodiscard]] inline outcome<delay_kernel> design_kaiser_delay(double delay_samples, const delay_limits& limits = {}) {
   const auto [bandwidth, error_dB] = limits;
   if (!(std::abs(delay_samples) < 1e9)) return failure{"delay of " + std::to_string(delay_samples) + " samples: not below 1e9"};
-  if (!(bandwidth > 0 && bandwidth <= 0.99)) return failure{"delay: bandwidth " + std::to_string(bandwidth) + " is not in 0 ... 0.99"};
-  if (!(error_dB >= -280 && error_dB < 0)) return failure{"delay: error of " + std::to_string(error_dB) + " dB is not in -280 ... 0"};
+  if (!(bandwidth > 0 && bandwidth <= 0.99))
+    return failure{"delay: bandwidth " + std::to_string(bandwidth) + " is not in 0 ... 0.99"};
+  if (!(error_dB >= -280 && error_dB < 0))
+    return failure{"delay: error of " + std::to_string(error_dB) + " dB is not in -280 ... 0"};
 
   const double whole = std::floor(delay_samples), fraction = delay_samples - whole;
   const double estimate = (-error_dB - 12) / (4.57 * 2 * std::numbers::pi * (1 - bandwidth));  // a little short

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A record as one period of a spectrum: its first sample held before it, its last one after it, and from there gently back, half a
-// cosine, to where it begins. So a filter meets no step where the period closes, and what wraps around falls into the padding.
+// A record as one period of a spectrum: its first sample held before it, its last one after it, and from there gently back, half
+// a cosine, to where it begins. So a filter meets no step where the period closes, and what wraps around falls into the padding.
 //
 #pragma once
 
@@ -20,10 +20,13 @@ namespace rosin {
 /// Spectra of records of one length, and back. At least `pad` samples (> 0) on either side.
 class held_record {
 public:
-  held_record(std::size_t samples, std::size_t pad) : samples_{samples}, pad_{pad}, size_{fast_size(samples + 2 * pad)}, fft_(size_) {}
+  held_record(std::size_t samples, std::size_t pad)
+      : samples_{samples}, pad_{pad}, size_{fast_size(samples + 2 * pad)}, fft_(size_) {}
 
   [[nodiscard]] std::size_t bins() const { return size_ / 2 + 1; }
-  [[nodiscard]] double frequency_Hz(std::size_t k, double rate_Hz) const { return static_cast<double>(k) * rate_Hz / static_cast<double>(size_); }
+  [[nodiscard]] double frequency_Hz(std::size_t k, double rate_Hz) const {
+    return static_cast<double>(k) * rate_Hz / static_cast<double>(size_);
+  }
   [[nodiscard]] std::vector<std::complex<double>> spectrum(std::span<const double> x) {
     std::vector<double> wide(size_);
     for (std::size_t i = 0; i < size_; ++i) wide[i] = x[std::min(samples_ - 1, i < pad_ ? 0 : i - pad_)];

@@ -84,9 +84,8 @@ private:
   template <class Kernel>
   block_convolver(std::size_t inputs, const std::vector<Kernel>& kernels, lag_range lags, std::size_t block)
       : inputs_{inputs}, outputs_{kernels.size() / inputs}, lags_{lags},
-        fft_(block > 0 ? block : quickest_block(lags.taps(), sizeof(complex))),
-        useful_{fft_.size() - lags.taps() + 1}, hop_{lanes * useful_ * (lone() ? 2 : 1)}, mirror_(fft_.size()),
-        spectra_((inputs + 1) / 2, fft_.make_buffer()),
+        fft_(block > 0 ? block : quickest_block(lags.taps(), sizeof(complex))), useful_{fft_.size() - lags.taps() + 1},
+        hop_{lanes * useful_ * (lone() ? 2 : 1)}, mirror_(fft_.size()), spectra_((inputs + 1) / 2, fft_.make_buffer()),
         sum_(fft_.make_buffer()) {
     const std::size_t n = fft_.size();
     for (std::size_t k = 0; k < n; ++k) mirror_[fft_.position(k)] = static_cast<std::uint32_t>(fft_.position((n - k) % n));
@@ -107,7 +106,8 @@ private:
     for (std::size_t output = 0; output < 2; ++output)
       for (std::size_t input = 0; input < 2; ++input)
         if (lone() && output == input) pair.add(kernels[0], output, input);
-        else if (p + output < outputs_ && m + input < inputs_) pair.add(kernels[(p + output) * inputs_ + m + input], output, input);
+        else if (p + output < outputs_ && m + input < inputs_)
+          pair.add(kernels[(p + output) * inputs_ + m + input], output, input);
 
     const lane_fft<double, 1> exact(n);  // in double for any T
     buffer weights(4 * n);
@@ -115,7 +115,8 @@ private:
       double* const bins = reinterpret_cast<double*>((part == 0 ? pair.a : pair.b).data());
       exact.forward(bins);
       for (std::size_t k = 0; k < 2 * n; ++k)
-        weights[4 * fft_.position(k / 2) + 2 * part + k % 2] = static_cast<T>(bins[2 * exact.position(k / 2) + k % 2] / fft_.gain());
+        weights[4 * fft_.position(k / 2) + 2 * part + k % 2] =
+            static_cast<T>(bins[2 * exact.position(k / 2) + k % 2] / fft_.gain());
     }
     return weights;
   }

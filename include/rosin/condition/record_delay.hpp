@@ -37,9 +37,7 @@ public:
   [[nodiscard]] sample_range valid(std::size_t length) const noexcept { return convolver_.valid(length); }
 
   /// Spans of one length that do not overlap. Allocates nothing.
-  void process(std::span<const T> in, std::span<T> out) noexcept {
-    convolver_.process(std::array{in}, std::array{out});
-  }
+  void process(std::span<const T> in, std::span<T> out) noexcept { convolver_.process(std::array{in}, std::array{out}); }
 
 private:
   record_delay(double delay_samples, const delay_kernel& kernel)

@@ -34,9 +34,7 @@ public:
   [[nodiscard]] const T* operator->() const noexcept { return std::get_if<0>(&state_); }
 
   /// The reason; empty where there is a value.
-  [[nodiscard]] std::string error() const {
-    return has_value() ? std::string{} : std::get_if<1>(&state_)->message;
-  }
+  [[nodiscard]] std::string error() const { return has_value() ? std::string{} : std::get_if<1>(&state_)->message; }
 
 private:
   std::variant<T, failure> state_;

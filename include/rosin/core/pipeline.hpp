@@ -18,7 +18,7 @@ namespace rosin {
 
 /// Two stages in a row; chains of any length are built from it.
 template <Stage First, Stage Second>
-  requires Feeds<First, Second>
+requires Feeds<First, Second>
 class then {
 public:
   using input_type = typename First::input_type;
@@ -50,7 +50,7 @@ template <Stage Only>
 ///     auto bow = rosin::pipeline(align, undo_bridge, calibrate);
 ///     float force_N = bow(sample);
 template <Stage First, Stage Second, Stage... Rest>
-  requires Feeds<First, Second>
+requires Feeds<First, Second>
 [[nodiscard]] constexpr auto pipeline(First first, Second second, Rest... rest) noexcept {
   return pipeline(then<First, Second>{std::move(first), std::move(second)}, std::move(rest)...);
 }

@@ -22,15 +22,17 @@ template <class S>
 concept Stage = std::movable<S> && requires(S stage, const S& same, const typename S::input_type& x) {
   typename S::input_type;
   typename S::output_type;
-  { stage(x) } noexcept -> std::same_as<typename S::output_type>;
-  { stage.reset() } noexcept;
-  { same.latency() } noexcept -> std::floating_point;
+  { stage(x) }
+  noexcept->std::same_as<typename S::output_type>;
+  { stage.reset() }
+  noexcept;
+  { same.latency() }
+  noexcept->std::floating_point;
 };
 
 /// `First` may be followed by `Second`: what the one gives is exactly what the other takes. A change of
 /// precision is never made silently.
 template <class First, class Second>
-concept Feeds = Stage<First> && Stage<Second> &&
-                std::same_as<typename First::output_type, typename Second::input_type>;
+concept Feeds = Stage<First> && Stage<Second> && std::same_as<typename First::output_type, typename Second::input_type>;
 
 }  // namespace rosin

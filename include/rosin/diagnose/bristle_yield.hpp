@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Bristles that bend also let go bit by bit, long before the string slips. Of the speed v of the rod relative to the string the part
-// 1 - p bends them and p is flow: z' = v (1 - p). With f = s0 z, as it is while they bend slowly, p is known from the force alone
-// (elasto_plastic.hpp, with z / z_ss = f / (mu N)):
+// Bristles that bend also let go bit by bit, long before the string slips. Of the speed v of the rod relative to the string the
+// part 1 - p bends them and p is flow: z' = v (1 - p). With f = s0 z, as it is while they bend slowly, p is known from the force
+// alone (elasto_plastic.hpp, with z / z_ss = f / (mu N)):
 //
 //     LuGre           p = sgn(v z) |f| / (mu N)
 //     elasto-plastic  p = alpha |f| / (mu N) where v z > 0 and |f| > elastic mu N, alpha half a sine from there to mu N; else 0
@@ -20,10 +20,10 @@
 namespace rosin {
 
 struct bristle_yield {
-  double limit = 0;            ///< mu: force / normal force at which nothing bends any more; 0: they only bend
-  double elastic = at_once;    ///< share of the limit up to which they only bend; at_once: none, and they flow both ways (LuGre)
+  double limit = 0;          ///< mu: force / normal force at which nothing bends any more; 0: they only bend
+  double elastic = at_once;  ///< share of the limit up to which they only bend; at_once: none, and they flow both ways (LuGre)
 
-  double weakening_s_m = 0;    ///< of the limit, by the speed
+  double weakening_s_m = 0;  ///< of the limit, by the speed
 
   static constexpr double at_once = -1;
   static constexpr double most = 0.8;  ///< p is not followed beyond it: there the string slips

@@ -1,9 +1,10 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// What a contact of some width that was found leaves to the rest of the catalogue: one contact, which moves as both its places do on the
-// average and pulls with the force of both (wide_record.hpp), up to where both can be told apart. Torsion is that of a string held at two
-// places; what one contact's torsion would make of the force is set off against it, so that whoever adds that has the true surface.
+// What a contact of some width that was found leaves to the rest of the catalogue: one contact, which moves as both its places do
+// on the average and pulls with the force of both (wide_record.hpp), up to where both can be told apart. Torsion is that of a
+// string held at two places; what one contact's torsion would make of the force is set off against it, so that whoever adds that
+// has the true surface.
 //
 #pragma once
 

@@ -6,10 +6,10 @@
 //
 //     eps = -(s / (s0 (1 + s d))) f / (1 - p)
 //
-// s0 and s0 d their spring and damping, p the part of the motion that is flow (bristle_yield.hpp). Delay and stiffness first as if they
-// only bent, then the limit of their flow on a grid, then all again with it. The force is measured: its noise is in the column, adds to
-// what is left, and makes bristles look stiffer than they are, by its share of the column's power: where that is much, a narrower
-// band is asked for the stiffness.
+// s0 and s0 d their spring and damping, p the part of the motion that is flow (bristle_yield.hpp). Delay and stiffness first as
+// if they only bent, then the limit of their flow on a grid, then all again with it. The force is measured: its noise is in the
+// column, adds to what is left, and makes bristles look stiffer than they are, by its share of the column's power: where that is
+// much, a narrower band is asked for the stiffness.
 //
 #pragma once
 
@@ -23,7 +23,8 @@ namespace detail {
 inline constexpr double other_compliance = 0.7;
 
 /// Bristles' columns of all takes for a delay; `softer`: each take's compliance against the stated one (empty: all alike).
-[[nodiscard]] inline std::vector<std::vector<double>> bending_columns(stick_bench& bench, double delay_s, const std::vector<double>& softer) {
+[[nodiscard]] inline std::vector<std::vector<double>> bending_columns(stick_bench& bench, double delay_s,
+                                                                      const std::vector<double>& softer) {
   std::vector<std::vector<double>> out;
   for (auto& r : bench.records()) {
     const double own = softer.empty() ? 1.0 : softer[out.size()];
@@ -39,12 +40,15 @@ struct bending_fit {
   stick_design design{};
   stick_solution solution{};
 
-  [[nodiscard]] double density() const noexcept { return solution.log_likelihood * solution.rows / std::max(1.0, solution.effective); }
+  [[nodiscard]] double density() const noexcept {
+    return solution.log_likelihood * solution.rows / std::max(1.0, solution.effective);
+  }
   [[nodiscard]] double share() const noexcept { return solution.effective / std::max(1.0, solution.rows); }
 };
 
 /// `size`: about what the compliance is, which flow depends on.
-[[nodiscard]] inline bending_fit fit_bending(stick_bench& bench, double delay_s, const bristle_yield& yields, double size, const std::vector<double>& softer) {
+[[nodiscard]] inline bending_fit fit_bending(stick_bench& bench, double delay_s, const bristle_yield& yields, double size,
+                                             const std::vector<double>& softer) {
   bending_fit out{.delay_s = delay_s, .yields = yields, .design = bench.declared()};
   const auto bends = bending_columns(bench, delay_s, softer);
   for (std::size_t t = 0; t < bends.size(); ++t) out.design.add_shared(t, bench.flowing(t, yields, bends[t], size));
@@ -57,12 +61,14 @@ struct bending_fit {
 }
 
 /// The likeliest delay near `delay_s`, by parabolas through three logarithms of it.
-[[nodiscard]] inline bending_fit find_delay(stick_bench& bench, double delay_s, const bristle_yield& yields, double size, const std::vector<double>& softer, double step) {
+[[nodiscard]] inline bending_fit find_delay(stick_bench& bench, double delay_s, const bristle_yield& yields, double size,
+                                            const std::vector<double>& softer, double step) {
   constexpr double least_s = 1e-8, most_s = 1e-4;
   const auto at = [&](double delay) { return fit_bending(bench, std::clamp(delay, least_s, most_s), yields, size, softer); };
   bending_fit middle = at(delay_s), low = at(delay_s * std::exp(-step)), high = at(delay_s * std::exp(step));
   for (int moves = 0; moves < 6 && std::max(low.density(), high.density()) > middle.density(); ++moves) {
-    if (low.density() > high.density()) high = std::move(middle), middle = std::move(low), low = at(middle.delay_s * std::exp(-step));
+    if (low.density() > high.density())
+      high = std::move(middle), middle = std::move(low), low = at(middle.delay_s * std::exp(-step));
     else low = std::move(middle), middle = std::move(high), high = at(middle.delay_s * std::exp(step));
   }
   const double bend = 2 * middle.density() - low.density() - high.density();
@@ -86,7 +92,8 @@ struct bending_fit {
 }
 
 /// The flow that explains most, for bristles of a compliance that bend as `bends` says.
-[[nodiscard]] inline bristle_yield find_yield(stick_bench& bench, const explained& quick, const std::vector<std::vector<double>>& bends, double compliance) {
+[[nodiscard]] inline bristle_yield find_yield(stick_bench& bench, const explained& quick,
+                                              const std::vector<std::vector<double>>& bends, double compliance) {
   double best = 0;
   bristle_yield out;
   const auto attempt = [&](const bristle_yield& y) {
@@ -108,7 +115,8 @@ struct bending_fit {
   return out;
 }
 
-/// Noise's share in the power of the bristles' column, beyond what the other columns explain of that; and its rms in the equation.
+/// Noise's share in the power of the bristles' column, beyond what the other columns explain of that; and its rms in the
+/// equation.
 struct bending_noise {
   double share = 0, rms_m_s = 0;
 };
@@ -122,13 +130,16 @@ struct bending_noise {
   const Eigen::MatrixXd square = others.transpose() * others;
   const Eigen::VectorXd along = others.transpose() * column;
   const double loose = 1e-9 * std::max(1e-300, square.diagonal().maxCoeff());
-  const double left = column.squaredNorm() - along.dot((square + loose * Eigen::MatrixXd::Identity(square.rows(), square.cols())).ldlt().solve(along));
+  const double left = column.squaredNorm() -
+                      along.dot((square + loose * Eigen::MatrixXd::Identity(square.rows(), square.cols())).ldlt().solve(along));
   double noise = 0;
   for (std::size_t t = 0; t < fit.design.rows.size(); ++t) {
     const double own = fit.size * (softer.empty() ? 1.0 : softer[t]);
-    noise += static_cast<double>(fit.design.rows[t].target.size()) * std::pow(bench.noise_through(t, [&](double f) { return own * bristle_bending(f, fit.delay_s); }), 2);
+    noise += static_cast<double>(fit.design.rows[t].target.size()) *
+             std::pow(bench.noise_through(t, [&](double f) { return own * bristle_bending(f, fit.delay_s); }), 2);
   }
-  return {left > 0 ? std::min(1.0, noise / (left * fit.size * fit.size)) : 1.0, std::sqrt(noise / static_cast<double>(s.y.size()))};
+  return {left > 0 ? std::min(1.0, noise / (left * fit.size * fit.size)) : 1.0,
+          std::sqrt(noise / static_cast<double>(s.y.size()))};
 }
 
 /// The hypothesis, and how much of what it rests on is noise.
@@ -163,23 +174,32 @@ struct bristle_estimate {
   settle_hypothesis(bench, fit_design(found.design, bench.floor_m_s()), h);
   const auto noise = noise_of(bench, found, softer);
   h.noise = std::hypot(bench.doubt_m_s(), noise.rms_m_s) / bench.speed_m_s();
-  const double stiffness = 1e6 / found.size, last = found.solution.covariance(found.solution.covariance.rows() - 1, found.solution.covariance.cols() - 1);
+  const double stiffness = 1e6 / found.size,
+               last = found.solution.covariance(found.solution.covariance.rows() - 1, found.solution.covariance.cols() - 1);
   const double doubt = std::hypot(std::sqrt(std::max(0.0, last)), other_compliance, 0.3 * noise.share * found.size);
-  h.parameters = {{"bristle_stiffness_N_m", stiffness, stiffness * std::hypot(stiffness * 1e-6 * doubt, contact_faults::bristles)}, {"bristle_delay_s", found.delay_s, found.delay_s * found.delay_relative_sd}};
+  h.parameters = {
+      {"bristle_stiffness_N_m", stiffness, stiffness * std::hypot(stiffness * 1e-6 * doubt, contact_faults::bristles)},
+      {"bristle_delay_s", found.delay_s, found.delay_s * found.delay_relative_sd}};
   const bristle_yield& yields = found.yields;
-  if (yields.limit > 0) h.free_parameters += 2, h.parameters.push_back({"friction_limit", yields.limit, 0.1 * yields.limit}), h.parameters.push_back({"weakening_s_m", yields.weakening_s_m, 2});
-  if (yields.limit > 0 && yields.elastic >= 0) h.free_parameters += 1, h.parameters.push_back({"elastic_share", yields.elastic, 0.1});
+  if (yields.limit > 0)
+    h.free_parameters += 2, h.parameters.push_back({"friction_limit", yields.limit, 0.1 * yields.limit}),
+        h.parameters.push_back({"weakening_s_m", yields.weakening_s_m, 2});
+  if (yields.limit > 0 && yields.elastic >= 0)
+    h.free_parameters += 1, h.parameters.push_back({"elastic_share", yields.elastic, 0.1});
   h.decided = found.size > 3 * doubt;
   return {h, noise.share};
 }
 
 }  // namespace detail
 
-/// The contact yields elastically before it slides. `softer`: each take's compliance against the stated one, where stiffness goes with
-/// the normal force (empty: all alike).
-[[nodiscard]] inline contact_hypothesis bristle_hypothesis(stick_bench& bench, const std::vector<double>& softer = {}) { return detail::estimate_bristles(bench, softer).hypothesis; }
+/// The contact yields elastically before it slides. `softer`: each take's compliance against the stated one, where stiffness goes
+/// with the normal force (empty: all alike).
+[[nodiscard]] inline contact_hypothesis bristle_hypothesis(stick_bench& bench, const std::vector<double>& softer = {}) {
+  return detail::estimate_bristles(bench, softer).hypothesis;
+}
 
-/// The same; where noise takes much of it, the parameters are those of narrower bands: noise bends bristles most at high frequencies.
+/// The same; where noise takes much of it, the parameters are those of narrower bands: noise bends bristles most at high
+/// frequencies.
 [[nodiscard]] inline contact_hypothesis bristle_hypothesis(stick_bench& bench, std::vector<contact_take> takes) {
   constexpr double much = 0.1, clearly_less = 0.8;
   auto found = detail::estimate_bristles(bench, {});
@@ -190,7 +210,8 @@ struct bristle_estimate {
     narrow.use_damping(bench.damping());
     const auto next = detail::estimate_bristles(narrow, {});
     if (!next.hypothesis.decided || next.noise_share > clearly_less * found.noise_share) break;
-    found.hypothesis.parameters = next.hypothesis.parameters, found.hypothesis.edge_Hz = takes.front().edge_Hz, found.noise_share = next.noise_share;
+    found.hypothesis.parameters = next.hypothesis.parameters, found.hypothesis.edge_Hz = takes.front().edge_Hz,
+    found.noise_share = next.noise_share;
   }
   return found.hypothesis;
 }

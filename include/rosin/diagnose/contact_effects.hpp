@@ -1,15 +1,15 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Which effect of the contact do bowed takes show that the model does not own up to? All that the catalogue knows of the contact is
-// tried on the reconstructed force and motion: what shows while the string sticks (contact_stick_effects.hpp), what shows while
-// it slips (contact_slip_effects.hpp), what shows in that both ends disagree about the point of contact (contact_width.hpp).
-// Effects of one kind are measured on the same samples, counted as the best among them shows how many are independent. The
-// contact is as declared where nothing gains clearly, on all takes and on takes predicted from the others. For a
+// Which effect of the contact do bowed takes show that the model does not own up to? All that the catalogue knows of the contact
+// is tried on the reconstructed force and motion: what shows while the string sticks (contact_stick_effects.hpp), what shows
+// while it slips (contact_slip_effects.hpp), what shows in that both ends disagree about the point of contact
+// (contact_width.hpp). Effects of one kind are measured on the same samples, counted as the best among them shows how many are
+// independent. The contact is as declared where nothing gains clearly, on all takes and on takes predicted from the others. For a
 // second effect: include() the first in the model, and ask again.
 //
-// If sensors or string are not as the calibration holds, the reconstruction is wrong and its two versions disagree. That disagreement
-// is taken as a floor of what can be told here; set right first what is wrong there.
+// If sensors or string are not as the calibration holds, the reconstruction is wrong and its two versions disagree. That
+// disagreement is taken as a floor of what can be told here; set right first what is wrong there.
 //
 #pragma once
 
@@ -22,26 +22,32 @@
 namespace rosin {
 
 struct contact_findings {
-  std::vector<contact_hypothesis> hypotheses;  ///< best first: those that stand, then by gain, those without determined parameters last
-  double stick_fluctuation = 0, stick_floor = 0;      ///< of the model as declared, and what the reconstruction leaves uncertain; of the rod's speed
-  double friction_residual = 0, friction_floor = 0;   ///< the same of the law, as a coefficient of friction
-  double independent = 0;                             ///< independent samples that stick
-  double threshold = 0;                               ///< gains below it are what imperfect models of a contact as declared gain
-  double tone_threshold = 0;                          ///< the same for tones in time, which a string does not make by itself, and for laws of equal freedom
+  /// best first: those that stand, then by gain, those without determined parameters last
+  std::vector<contact_hypothesis> hypotheses;
+  double stick_fluctuation = 0,
+         stick_floor = 0;  ///< of the model as declared, and what the reconstruction leaves uncertain; of the rod's speed
+  double friction_residual = 0, friction_floor = 0;  ///< the same of the law, as a coefficient of friction
+  double independent = 0;                            ///< independent samples that stick
+  double threshold = 0;                              ///< gains below it are what imperfect models of a contact as declared gain
+  /// the same for tones in time, which a string does not make by itself, and for laws of equal freedom
+  double tone_threshold = 0;
   bool as_declared = true;
-  bool slips_resolved = true;                         ///< slips last long enough in the band for the law's residual to be judged
+  bool slips_resolved = true;  ///< slips last long enough in the band for the law's residual to be judged
   std::vector<std::string> warnings;
-  std::vector<contact_trace> sticking, slipping;      ///< what the model as declared leaves, of each take
+  std::vector<contact_trace> sticking, slipping;  ///< what the model as declared leaves, of each take
 
   /// What an effect has to gain, in nats, so that it counts.
   [[nodiscard]] double needed(const contact_hypothesis& h) const {
     return h.effect.find("ripple") != std::string::npos || h.statistic == "friction-residual" ? tone_threshold : threshold;
   }
   /// Clearly there, in all takes and in takes predicted from the others.
-  [[nodiscard]] bool stands(const contact_hypothesis& h) const { return h.decided && h.gain > needed(h) && h.held_out_gain > needed(h) / 2; }
+  [[nodiscard]] bool stands(const contact_hypothesis& h) const {
+    return h.decided && h.gain > needed(h) && h.held_out_gain > needed(h) / 2;
+  }
 };
 
-/// The statistic that shows several times what noise and imperfect models leave, whether any effect gains or not; empty: none does.
+/// The statistic that shows several times what noise and imperfect models leave, whether any effect gains or not; empty: none
+/// does.
 [[nodiscard]] inline std::string beyond_doubt(const contact_findings& f) {
   constexpr double much_sticking = 1.8, much_slipping = 5;
   if (f.stick_fluctuation > much_sticking * f.stick_floor) return "stick-fluctuation";
@@ -61,7 +67,8 @@ inline void common_share(std::vector<contact_hypothesis>& hypotheses, const std:
     if (h.statistic == statistic) h.gain = share * h.density, h.held_out_gain = share * h.held_out_density, h.share = share;
 }
 
-[[nodiscard]] inline contact_hypothesis stick_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes, const std::string& effect) {
+[[nodiscard]] inline contact_hypothesis stick_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes,
+                                                         const std::string& effect) {
   if (effect == "torsion") return torsion_hypothesis(bench);
   if (effect == "rod-resonance") return rod_hypothesis(bench);
   if (effect == "elasto-plastic-friction") return bristle_hypothesis(bench, takes);
@@ -70,11 +77,14 @@ inline void common_share(std::vector<contact_hypothesis>& hypotheses, const std:
 }
 
 /// The likeliest effect once more with the other convention of torsional damping, which the effect itself may have hidden.
-inline void reconsider_damping(stick_bench& bench, const std::vector<contact_take>& takes, std::vector<contact_hypothesis>& hypotheses) {
-  const auto best = std::max_element(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.density < b.density; });
+inline void reconsider_damping(stick_bench& bench, const std::vector<contact_take>& takes,
+                               std::vector<contact_hypothesis>& hypotheses) {
+  const auto best =
+      std::max_element(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.density < b.density; });
   if (best == hypotheses.end() || best->gain < 100 || best->effect == "torsion" || !bench.model().torsion) return;
   const double before = bench.fit().density, held_out = bench.fit().held_out;
-  bench.use_damping(bench.damping() == torsion_damping::constant_q ? torsion_damping::viscous_modes : torsion_damping::constant_q);
+  bench.use_damping(bench.damping() == torsion_damping::constant_q ? torsion_damping::viscous_modes
+                                                                   : torsion_damping::constant_q);
   auto other = stick_hypothesis(bench, takes, best->effect);
   other.density += bench.fit().density - before;
   other.held_out_density += bench.fit().held_out - held_out;
@@ -83,22 +93,25 @@ inline void reconsider_damping(stick_bench& bench, const std::vector<contact_tak
 
 inline void add_stick_hypotheses(stick_bench& bench, const std::vector<contact_take>& takes, contact_findings& out) {
   if (!bench.usable()) {
-    out.warnings.emplace_back("the string hardly sticks to the rod, or is not known to: torsion, rod and steadiness of speed cannot be told");
+    out.warnings.emplace_back(
+        "the string hardly sticks to the rod, or is not known to: torsion, rod and steadiness of speed cannot be told");
     return;
   }
   const auto& known = bench.model().included;
   for (const char* effect : {"torsion", "rod-resonance", "elasto-plastic-friction", "creep", "speed-ripple"})
-    if (std::find(known.begin(), known.end(), effect) == known.end()) out.hypotheses.push_back(stick_hypothesis(bench, takes, effect));
+    if (std::find(known.begin(), known.end(), effect) == known.end())
+      out.hypotheses.push_back(stick_hypothesis(bench, takes, effect));
   out.stick_fluctuation = bench.fit().solution.scale / bench.speed_m_s();
   out.stick_floor = bench.doubt_m_s() / bench.speed_m_s();
-  for (std::size_t t = 0; t < takes.size(); ++t) out.sticking.push_back(sticking_trace(bench, bench.declared().rows[t], bench.fit().solution.residual[t], t, takes[t].name));
+  for (std::size_t t = 0; t < takes.size(); ++t)
+    out.sticking.push_back(sticking_trace(bench, bench.declared().rows[t], bench.fit().solution.residual[t], t, takes[t].name));
   out.independent = bench.independent();
   reconsider_damping(bench, takes, out.hypotheses);
   common_share(out.hypotheses, "stick-fluctuation");
 }
 
-/// Whether slips last nine periods of the band's edge on the average of their samples, in every take: in less, a band-limited force
-/// is off any law.
+/// Whether slips last nine periods of the band's edge on the average of their samples, in every take: in less, a band-limited
+/// force is off any law.
 [[nodiscard]] inline bool slips_are_resolved(const slip_bench& bench, const std::vector<contact_take>& takes) {
   for (std::size_t t = 0; t < bench.records().size(); ++t) {
     double sum = 0, squares = 0;
@@ -126,7 +139,8 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   out.friction_floor = bench.floor();
   out.slips_resolved = slips_are_resolved(bench, takes);
   for (std::size_t t = 0; t < takes.size(); ++t)
-    out.slipping.push_back(trace_of(bench.declared().design.rows[t].sample, bench.declared().fit.solution.residual[t], sticks.records()[t].origin(), takes[t].rate_Hz, 1, takes[t].name));
+    out.slipping.push_back(trace_of(bench.declared().design.rows[t].sample, bench.declared().fit.solution.residual[t],
+                                    sticks.records()[t].origin(), takes[t].rate_Hz, 1, takes[t].name));
   common_share(out.hypotheses, "friction-residual");
 }
 
@@ -138,7 +152,8 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   std::vector<contact_take> takes;
   for (const auto& t : all) {
     std::size_t known = 0;
-    for (std::size_t i = 0; i < std::min(t.force_N.size(), t.velocity_m_s.size()); ++i) known += std::isfinite(t.force_N[i]) && std::isfinite(t.velocity_m_s[i]) ? 1U : 0U;
+    for (std::size_t i = 0; i < std::min(t.force_N.size(), t.velocity_m_s.size()); ++i)
+      known += std::isfinite(t.force_N[i]) && std::isfinite(t.velocity_m_s[i]) ? 1U : 0U;
     if (known >= 500 && t.rod_speed_m_s != 0 && t.rate_Hz > 0 && t.impedance_Ns_m > 0) takes.push_back(t);
     else out.warnings.push_back(t.name + ": left out: too short, or its rod's speed or the string's impedance is unknown");
   }
@@ -155,7 +170,8 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   detail::add_slip_hypotheses(sticks, takes, out);
   out.threshold = std::max(40.0, 0.035 * out.independent);
   out.tone_threshold = std::max(30.0, 0.01 * out.independent);
-  std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(), [](const auto& a, const auto& b) { return a.decided != b.decided ? a.decided : a.gain > b.gain; });
+  std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(),
+                   [](const auto& a, const auto& b) { return a.decided != b.decided ? a.decided : a.gain > b.gain; });
   std::stable_partition(out.hypotheses.begin(), out.hypotheses.end(), [&](const auto& h) { return out.stands(h); });
   out.as_declared = std::none_of(out.hypotheses.begin(), out.hypotheses.end(), [&](const auto& h) { return out.stands(h); });
   return out;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // One tone in what a model leaves over, at samples that come in patches (only while it sticks, or only while it slips): its
-// frequency is common to all takes, size and phase are each take's own. Scanned by least squares on the patches themselves, since a
-// periodogram of patches with zeros between would show the patches. Whether it is real is asked by prediction: size and phase
+// frequency is common to all takes, size and phase are each take's own. Scanned by least squares on the patches themselves, since
+// a periodogram of patches with zeros between would show the patches. Whether it is real is asked by prediction: size and phase
 // from one half of each take have to explain the other.
 //
 #pragma once
@@ -49,7 +49,8 @@ struct tone_sums {
   for (std::size_t i = from; i < to; ++i) {
     const std::size_t n = r.sample[i];
     if (i == from || n - at > 16) z = std::polar(1.0, w * static_cast<double>(n));
-    else for (; at < n; ++at) z *= turn;
+    else
+      for (; at < n; ++at) z *= turn;
     at = n;
     const auto k = static_cast<Eigen::Index>(i);
     const double c = r.weight[k] * r.carrier[k], x = c * z.imag(), y = c * z.real(), v = r.weight[k] * r.residual[k];
@@ -100,9 +101,11 @@ struct tone_sums {
   for (const auto& t : takes)
     for (const bool second : {false, true}) {
       const std::size_t half = t.sample.size() / 2, n = t.sample.size();
-      const auto here = detail::sums_at(t, f, second ? half : 0, second ? n : half), there = detail::sums_at(t, f, second ? 0 : half, second ? half : n);
+      const auto here = detail::sums_at(t, f, second ? half : 0, second ? n : half),
+                 there = detail::sums_at(t, f, second ? 0 : half, second ? half : n);
       const auto a = there.solve();
-      sum += 2 * (a.real() * here.sr + a.imag() * here.cr) - (a.real() * a.real() * here.ss + 2 * a.real() * a.imag() * here.sc + a.imag() * a.imag() * here.cc);
+      sum += 2 * (a.real() * here.sr + a.imag() * here.cr) -
+             (a.real() * a.real() * here.ss + 2 * a.real() * a.imag() * here.sc + a.imag() * a.imag() * here.cc);
     }
   return sum;
 }
@@ -117,7 +120,8 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
     power += t.weight.cwiseProduct(t.residual).squaredNorm();
     if (!t.sample.empty()) length = std::max(length, static_cast<double>(t.sample.back() - t.sample.front()) / t.rate_Hz);
   }
-  const double floor = rows * scale * scale * 1e-6, left = std::max(power - tone.explained, floor), predicted = std::max(power - tone_prediction(takes, tone.frequency_Hz), floor);
+  const double floor = rows * scale * scale * 1e-6, left = std::max(power - tone.explained, floor),
+               predicted = std::max(power - tone_prediction(takes, tone.frequency_Hz), floor);
   h.gain = 0.5 * share * rows * std::log(power / left);
   h.held_out_gain = 0.5 * share * rows * std::log(power / predicted);
   const double noise = std::sqrt(left / std::max(1.0, rows)), effective = std::max(1.0, share * rows);
@@ -125,8 +129,10 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
   for (const auto& t : takes) carrier += t.weight.cwiseProduct(t.carrier).squaredNorm();
   carrier = std::sqrt(carrier / std::max(1.0, rows));
   tone.size_sd = std::sqrt(2 / effective) * noise / std::max(1e-12, carrier);
-  tone.frequency_sd_Hz = std::sqrt(6 / effective) * noise / (std::numbers::pi * std::max(1e-9, length) * std::max(1e-12, tone.size * carrier));
-  h.parameters = {{"frequency_Hz", tone.frequency_Hz, tone.frequency_sd_Hz}, {"relative", tone.size, std::hypot(tone.size_sd, contact_faults::ripple * tone.size)}};
+  tone.frequency_sd_Hz =
+      std::sqrt(6 / effective) * noise / (std::numbers::pi * std::max(1e-9, length) * std::max(1e-12, tone.size * carrier));
+  h.parameters = {{"frequency_Hz", tone.frequency_Hz, tone.frequency_sd_Hz},
+                  {"relative", tone.size, std::hypot(tone.size_sd, contact_faults::ripple * tone.size)}};
   h.free_parameters = 1 + 2 * static_cast<int>(takes.size());
   h.decided = tone.size > 4 * tone.size_sd;
 }
@@ -158,7 +164,8 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
     for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
       std::vector<double> wave(bench.records()[t].size());
       for (std::size_t i = 0; i < wave.size(); ++i)
-        wave[i] = bench.records()[t].take().rod_speed_m_s * std::sin(2 * std::numbers::pi * tone.frequency_Hz * static_cast<double>(i) / takes[t].rate_Hz + turn);
+        wave[i] = bench.records()[t].take().rod_speed_m_s *
+                  std::sin(2 * std::numbers::pi * tone.frequency_Hz * static_cast<double>(i) / takes[t].rate_Hz + turn);
       d.add_own(t, wave);
     }
   const auto fit = fit_design(d, bench.floor_m_s());
@@ -168,7 +175,8 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
   h.held_out_gain = std::min(predicted, bench.gains(fit)[1]);
   h.share = fit.share, h.density = h.gain / fit.share, h.held_out_density = h.held_out_gain / fit.share;
   double size = 0;
-  for (const auto& own : fit.solution.own) size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
+  for (const auto& own : fit.solution.own)
+    size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
   h.parameters[1].value = size;
   h.fluctuation = fit.solution.scale / bench.speed_m_s();
   return h;

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Effects that show while the string slips. The declared model says: force = normal force times a curve of the slip speed, the same in
-// all takes, whatever the curve. Against it:
+// Effects that show while the string slips. The declared model says: force = normal force times a curve of the slip speed, the
+// same in all takes, whatever the curve. Against it:
 //
 //     normal-force-ripple   N (1 + relative sin(2 pi frequency t + phase)): a tone in force / curve
 //     thermal-friction      the force follows a temperature that the slips so far have left
@@ -22,14 +22,16 @@ namespace rosin {
 class slip_bench {
 public:
   /// `known_mu`: how well a coefficient of friction is known from the reconstruction, at best.
-  slip_bench(stick_bench& sticks, const std::vector<contact_take>& takes) : records_{slip_records(sticks, takes)}, pitch_{below_the_pitch(sticks.records())} {
+  slip_bench(stick_bench& sticks, const std::vector<contact_take>& takes)
+      : records_{slip_records(sticks, takes)}, pitch_{below_the_pitch(sticks.records())} {
     std::size_t samples = 0;
     for (std::size_t t = 0; t < records_.size(); ++t) {
       samples += records_[t].slips.sample.size();
       floor_ = std::max({floor_, 0.003, 0.6 * takes[t].force_sd_N / takes[t].normal_force_N});
       level_sd_ = std::max(level_sd_, takes[t].level_sd_N / takes[t].normal_force_N);
     }
-    usable_ = samples > 400 && std::all_of(records_.begin(), records_.end(), [](const auto& r) { return r.slips.sample.size() > 100 && r.normal_N > 0; });
+    usable_ = samples > 400 && std::all_of(records_.begin(), records_.end(),
+                                           [](const auto& r) { return r.slips.sample.size() > 100 && r.normal_N > 0; });
     if (!usable_) return;
     ripple_Hz_ = sticks.model().normal_ripple_Hz;
     declared_ = fit(sticks.model().law == contact_law::thermal);
@@ -42,7 +44,8 @@ public:
   [[nodiscard]] double pitch_Hz() const noexcept { return pitch_; }
   /// Of the mean friction coefficient, where sensors lost the force's mean.
   [[nodiscard]] double level_sd() const noexcept { return level_sd_; }
-  /// The thermal law or the curve along the motion. What a known ripple of the normal force does to the force is taken out with the law itself.
+  /// The thermal law or the curve along the motion. What a known ripple of the normal force does to the force is taken out with
+  /// the law itself.
   [[nodiscard]] law_fit fit(bool thermal) const {
     law_fit law = fit_to(records_, thermal);
     if (!ripple_Hz_) return law;
@@ -67,7 +70,10 @@ public:
         const Eigen::Index c = rows.own.cols();
         rows.own.conservativeResize(rows.target.size(), c + 1);
         for (Eigen::Index i = 0; i < mu.size(); ++i)
-          rows.own(i, c) = mu[i] * std::sin(2 * std::numbers::pi * f * static_cast<double>(rows.sample[static_cast<std::size_t>(i)]) / records_[t].rate_Hz + turn);
+          rows.own(i, c) =
+              mu[i] * std::sin(2 * std::numbers::pi * f * static_cast<double>(rows.sample[static_cast<std::size_t>(i)]) /
+                                   records_[t].rate_Hz +
+                               turn);
       }
   }
 
@@ -85,14 +91,18 @@ private:
     for (std::size_t t = 0; t < records.size(); ++t) {
       const auto& rows = law.design.rows[t];
       const auto& left = law.fit.solution.residual[t];
-      const tone_rows take{left, rows.target - left, detail::student_row_factors(left, law.residual()), rows.sample, records[t].rate_Hz};
-      std::complex<double> relative = detail::sums_at(take, f, 0, rows.sample.size() - static_cast<std::size_t>(rows.shared.cols() - 2)).solve();
+      const tone_rows take{left, rows.target - left, detail::student_row_factors(left, law.residual()), rows.sample,
+                           records[t].rate_Hz};
+      std::complex<double> relative =
+          detail::sums_at(take, f, 0, rows.sample.size() - static_cast<std::size_t>(rows.shared.cols() - 2)).solve();
       if (constexpr double most = 0.8; std::abs(relative) > most) relative *= most / std::abs(relative);
       const auto steady = [&](std::size_t i) {
-        return 1 / (1 + (relative * std::polar(1.0, 2 * std::numbers::pi * f * static_cast<double>(i) / records[t].rate_Hz)).imag());
+        return 1 /
+               (1 + (relative * std::polar(1.0, 2 * std::numbers::pi * f * static_cast<double>(i) / records[t].rate_Hz)).imag());
       };
       for (std::size_t i = 0; i < records[t].force_N.size(); ++i) records[t].force_N[i] *= steady(i);
-      for (Eigen::Index k = 0; k < records[t].slips.friction.size(); ++k) records[t].slips.friction[k] *= steady(records[t].slips.sample[static_cast<std::size_t>(k)]);
+      for (Eigen::Index k = 0; k < records[t].slips.friction.size(); ++k)
+        records[t].slips.friction[k] *= steady(records[t].slips.sample[static_cast<std::size_t>(k)]);
     }
   }
 
@@ -123,8 +133,8 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   const auto& s = bench.declared().fit.solution;
   std::vector<tone_rows> takes;
   for (std::size_t t = 0; t < bench.records().size(); ++t)
-    takes.push_back({s.residual[t], bench.predicted(t),
-                     detail::student_row_factors(s.residual[t], s.scale), bench.declared().design.rows[t].sample, bench.records()[t].rate_Hz});
+    takes.push_back({s.residual[t], bench.predicted(t), detail::student_row_factors(s.residual[t], s.scale),
+                     bench.declared().design.rows[t].sample, bench.records()[t].rate_Hz});
   auto tone = find_tone(takes, bench.pitch_Hz());
   stick_design d = bench.declared().design;
   bench.add_tone(d, tone.frequency_Hz);
@@ -135,12 +145,15 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   h.held_out_gain = std::min(h.held_out_gain, predicted);
   h.held_out_density = h.held_out_gain / h.share;
   double size = 0;
-  for (const auto& own : fit.solution.own) size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
+  for (const auto& own : fit.solution.own)
+    size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
   h.parameters[0].sd = std::hypot(h.parameters[0].sd, contact_faults::slip_tone * tone.frequency_Hz);  // seen once a period only
   h.parameters[1].value = size;
   double mu = 0;
-  for (std::size_t t = 0; t < bench.records().size(); ++t) mu += std::abs(bench.predicted(t).mean()) / static_cast<double>(bench.records().size());
-  h.parameters[1].sd = std::hypot(h.parameters[1].sd, size * bench.level_sd() / std::max(0.1, mu - bench.level_sd()));  // the level divides
+  for (std::size_t t = 0; t < bench.records().size(); ++t)
+    mu += std::abs(bench.predicted(t).mean()) / static_cast<double>(bench.records().size());
+  h.parameters[1].sd =
+      std::hypot(h.parameters[1].sd, size * bench.level_sd() / std::max(0.1, mu - bench.level_sd()));  // the level divides
   return h;
 }
 
@@ -158,11 +171,16 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   }
   const law_fit other = bench.fit(thermal);
   detail::settle_hypothesis(bench, other.fit, h);
-  h.decided = other.heat_memory || (other.rates.exchange_1_m < 1.1e4 && other.rates.conduction_1_s < 4.5e3 && other.rates.renewal < 9e3);
+  h.decided =
+      other.heat_memory || (other.rates.exchange_1_m < 1.1e4 && other.rates.conduction_1_s < 4.5e3 && other.rates.renewal < 9e3);
   if (thermal && !other.heat_memory)
-    h.parameters = {{"conduction_1_s", other.rates.conduction_1_s, 0.2 * other.rates.conduction_1_s}, {"renewal", other.rates.renewal, 0.3 * other.rates.renewal + 100}, {"capacity_power", other.rates.capacity_power, 0.5}, {"exchange_1_m", other.rates.exchange_1_m, 0.2 * other.rates.exchange_1_m + 100}};
+    h.parameters = {{"conduction_1_s", other.rates.conduction_1_s, 0.2 * other.rates.conduction_1_s},
+                    {"renewal", other.rates.renewal, 0.3 * other.rates.renewal + 100},
+                    {"capacity_power", other.rates.capacity_power, 0.5},
+                    {"exchange_1_m", other.rates.exchange_1_m, 0.2 * other.rates.exchange_1_m + 100}};
   if (thermal && other.heat_memory)
-    h.parameters = {{"layer_m", other.heat.layer_m, other.heat.layer_m}, {"area_per_newton_m2", other.heat.area_per_newton_m2, other.heat.area_per_newton_m2}};
+    h.parameters = {{"layer_m", other.heat.layer_m, other.heat.layer_m},
+                    {"area_per_newton_m2", other.heat.area_per_newton_m2, other.heat.area_per_newton_m2}};
   return h;
 }
 

@@ -23,7 +23,8 @@ namespace detail {
 
 /// What the sensors' noise is in a row of columns F_1, F_2 (asked by frequency), rms, through a window.
 template <class Row>
-[[nodiscard]] double noise_of_ends(const Row& row, const std::array<double, 2>& noise_N, double rate_Hz, const smooth_window& window) {
+[[nodiscard]] double noise_of_ends(const Row& row, const std::array<double, 2>& noise_N, double rate_Hz,
+                                   const smooth_window& window) {
   constexpr int steps = 400;
   double power = 0;
   for (int k = 0; k < steps; ++k) {
@@ -44,14 +45,16 @@ public:
   [[nodiscard]] static std::vector<stick_take> stick_takes(const std::vector<contact_take>& takes) {
     std::vector<stick_take> out;
     for (const auto& t : takes)
-      out.push_back({t.force_N, t.velocity_m_s, t.rate_Hz, t.rod_speed_m_s, t.delay_s, t.impedance_Ns_m, t.velocity_sd_m_s, t.edge_Hz, t.start_s});
+      out.push_back({t.force_N, t.velocity_m_s, t.rate_Hz, t.rod_speed_m_s, t.delay_s, t.impedance_Ns_m, t.velocity_sd_m_s,
+                     t.edge_Hz, t.start_s});
     return out;
   }
 
   stick_bench(const std::vector<contact_take>& takes, const contact_model& model)
       : records_{detail::records_of(stick_takes(takes))}, model_{model} {
     if (records_.empty()) return;
-    for (const auto& t : takes) doubt_ = std::max(doubt_, doubt(t)), normal_force_N_.push_back(t.normal_force_N), noise_N_.push_back(t.noise_N);
+    for (const auto& t : takes)
+      doubt_ = std::max(doubt_, doubt(t)), normal_force_N_.push_back(t.normal_force_N), noise_N_.push_back(t.noise_N);
     doubt_ = std::hypot(doubt_, bristle_noise_m_s());
     free_ = fit_torsion(stick_takes(takes), model.torsion);
     mark();
@@ -99,14 +102,16 @@ public:
     }
     d.add_bound(-4, 1.5);
     d.add_bound(-1.5, 1.5);
-    for (int k = 0; torsion && k < 3; ++k) d.add_bound(loose ? -1.0 : -2 * model_.torsion_tolerance[k], loose ? 1.0 : 2 * model_.torsion_tolerance[k]);
+    for (int k = 0; torsion && k < 3; ++k)
+      d.add_bound(loose ? -1.0 : -2 * model_.torsion_tolerance[k], loose ? 1.0 : 2 * model_.torsion_tolerance[k]);
     include_found(d);
     return d;
   }
 
-  /// How a take's surface moves over bristles that flow as well as bend, at the samples that count. `bends`: their column in the equation, for a
-  /// micrometre a newton; `compliance`: what they have.
-  [[nodiscard]] std::vector<double> flowing(std::size_t take, const bristle_yield& yields, std::vector<double> bends, double compliance) {
+  /// How a take's surface moves over bristles that flow as well as bend, at the samples that count. `bends`: their column in the
+  /// equation, for a micrometre a newton; `compliance`: what they have.
+  [[nodiscard]] std::vector<double> flowing(std::size_t take, const bristle_yield& yields, std::vector<double> bends,
+                                            double compliance) {
     const auto& force = records_[take].force_N();
     for (std::size_t i = 0; i < bends.size(); ++i)
       if (marked_[take][i]) bends[i] *= yields.faster(force[i], normal_force_N_[take], -compliance * bends[i]);
@@ -120,7 +125,8 @@ public:
     const stick_take& r = records_[take].take();
     const auto row = [&](double f) {
       const std::complex<double> through = transfer(f);
-      return std::array{through * std::cos(2 * std::numbers::pi * f * r.delay_s[0]), through * std::cos(2 * std::numbers::pi * f * r.delay_s[1])};
+      return std::array{through * std::cos(2 * std::numbers::pi * f * r.delay_s[0]),
+                        through * std::cos(2 * std::numbers::pi * f * r.delay_s[1])};
     };
     return detail::noise_of_ends(row, noise_N_[take], r.rate_Hz, records_[take].window());
   }
@@ -147,7 +153,9 @@ private:
   [[nodiscard]] double bristle_noise_m_s() const {
     double most = 0;
     for (std::size_t t = 0; model_.bristle_stiffness_N_m && t < records_.size(); ++t)
-      most = std::max(most, noise_through(t, [&](double f) { return bristle_bending(f, model_.bristle_delay_s.value_or(0)) * (1e6 / *model_.bristle_stiffness_N_m); }));
+      most = std::max(most, noise_through(t, [&](double f) {
+                        return bristle_bending(f, model_.bristle_delay_s.value_or(0)) * (1e6 / *model_.bristle_stiffness_N_m);
+                      }));
     return most;
   }
 
@@ -167,12 +175,15 @@ private:
       auto surface = record.relative_m_s();
       if (free_ || model_.torsion) {
         const auto torsion = free_ ? free_->value : *model_.torsion;
-        detail::add_to(surface, record.force_through(torsion_at_contact(record.take(), torsion, free_ ? free_->damping : torsion_damping::constant_q)));
+        detail::add_to(surface, record.force_through(torsion_at_contact(record.take(), torsion,
+                                                                        free_ ? free_->damping : torsion_damping::constant_q)));
       }
       if (free_) {
         const auto& slow = record.compliance();
         detail::add_to(surface, slow[0], free_->rest[0] / stick_record::compliance_unit);
-        detail::add_to(surface, slow[1], -free_->rest[1] * std::pow(2 * std::numbers::pi * stick_record::compliance_corner_Hz, 2) / stick_record::compliance_unit);
+        detail::add_to(surface, slow[1],
+                       -free_->rest[1] * std::pow(2 * std::numbers::pi * stick_record::compliance_corner_Hz, 2) /
+                           stick_record::compliance_unit);
       }
       marked_.push_back(sticking_samples(record, surface, {.least = 0.1, .most = 0.5, .fluctuations = 5}));
       for (const char m : marked_.back()) rows_ += m ? 1U : 0U;
@@ -197,13 +208,16 @@ private:
     if (model_.rod) {
       const double f0 = (*model_.rod)[0], q = (*model_.rod)[1], mass = (*model_.rod)[2];
       for (std::size_t t = 0; t < records_.size(); ++t)
-        d.add_shared(t, records_[t].force_through([=](double f) { return -std::complex<double>(0, f / (2 * std::numbers::pi * mass)) / std::complex<double>(f0 * f0 - f * f, f * f0 / q); }));
+        d.add_shared(t, records_[t].force_through([=](double f) {
+          return -std::complex<double>(0, f / (2 * std::numbers::pi * mass)) / std::complex<double>(f0 * f0 - f * f, f * f0 / q);
+        }));
       d.add_bound(0, 1e9);
     }
     if (model_.bristle_stiffness_N_m) {
       const double delay = model_.bristle_delay_s.value_or(0);
       for (std::size_t t = 0; t < records_.size(); ++t)
-        d.add_shared(t, flowing(t, model_.yields, records_[t].force_through([=](double f) { return bristle_bending(f, delay); }), 1e6 / *model_.bristle_stiffness_N_m));
+        d.add_shared(t, flowing(t, model_.yields, records_[t].force_through([=](double f) { return bristle_bending(f, delay); }),
+                                1e6 / *model_.bristle_stiffness_N_m));
       d.add_bound(0, 1e9);
     }
     if (model_.speed_ripple_Hz)
@@ -211,7 +225,9 @@ private:
         for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
           std::vector<double> wave(records_[t].size());
           for (std::size_t i = 0; i < wave.size(); ++i)
-            wave[i] = records_[t].take().rod_speed_m_s * std::sin(2 * std::numbers::pi * *model_.speed_ripple_Hz * static_cast<double>(i) / records_[t].take().rate_Hz + turn);
+            wave[i] = records_[t].take().rod_speed_m_s * std::sin(2 * std::numbers::pi * *model_.speed_ripple_Hz *
+                                                                      static_cast<double>(i) / records_[t].take().rate_Hz +
+                                                                  turn);
           d.add_own(t, wave);
         }
   }
@@ -233,7 +249,8 @@ private:
 namespace detail {
 
 /// `origin`: where in the take the samples count from; `unit`: what the residual is shown in.
-[[nodiscard]] inline contact_trace trace_of(const std::vector<std::size_t>& samples, const Eigen::VectorXd& residual, std::size_t origin, double rate_Hz, double unit, const std::string& take) {
+[[nodiscard]] inline contact_trace trace_of(const std::vector<std::size_t>& samples, const Eigen::VectorXd& residual,
+                                            std::size_t origin, double rate_Hz, double unit, const std::string& take) {
   contact_trace out{take, {}, {}};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     out.time_s.push_back(static_cast<double>(origin + samples[i]) / rate_Hz);
@@ -242,7 +259,8 @@ namespace detail {
   return out;
 }
 
-[[nodiscard]] inline contact_trace sticking_trace(stick_bench& bench, const stick_rows& rows, const Eigen::VectorXd& residual, std::size_t take, const std::string& name) {
+[[nodiscard]] inline contact_trace sticking_trace(stick_bench& bench, const stick_rows& rows, const Eigen::VectorXd& residual,
+                                                  std::size_t take, const std::string& name) {
   const auto& record = bench.records()[take];
   return trace_of(rows.sample, residual, record.origin(), record.take().rate_Hz, bench.speed_m_s(), name);
 }

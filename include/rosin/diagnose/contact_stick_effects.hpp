@@ -25,10 +25,13 @@ namespace detail {
 /// How much of the residual of a design further columns would explain, in units of its variance.
 class explained {
 public:
-  explicit explained(const stick_design& design, const stick_solution& solution) : explained(design, solution.residual, solution.scale) {}
+  explicit explained(const stick_design& design, const stick_solution& solution)
+      : explained(design, solution.residual, solution.scale) {}
 
-  /// With the weights that another fit of the same rows leaves them. Coefficients are held about zero as loosely as their bounds are wide.
-  explained(const stick_design& design, const std::vector<Eigen::VectorXd>& residual, double scale) : design_{&design}, scale_{scale} {
+  /// With the weights that another fit of the same rows leaves them. Coefficients are held about zero as loosely as their bounds
+  /// are wide.
+  explained(const stick_design& design, const std::vector<Eigen::VectorXd>& residual, double scale)
+      : design_{&design}, scale_{scale} {
     const stacked s = stack(design.rows);
     Eigen::VectorXd left(s.y.size());
     for (std::size_t t = 0; t < design.rows.size(); ++t) left.segment(s.first[t], s.first[t + 1] - s.first[t]) = residual[t];
@@ -36,7 +39,8 @@ public:
     first_ = s.first;
     basis_ = weight_.asDiagonal() * s.x;
     Eigen::VectorXd hold = Eigen::VectorXd::Constant(s.x.cols(), 1e-12);
-    for (std::size_t i = 0; i < design.bounds.size(); ++i) hold[static_cast<Eigen::Index>(i)] += std::pow(2 * scale_ / std::max(1e-9, design.bounds[i][1] - design.bounds[i][0]), 2);
+    for (std::size_t i = 0; i < design.bounds.size(); ++i)
+      hold[static_cast<Eigen::Index>(i)] += std::pow(2 * scale_ / std::max(1e-9, design.bounds[i][1] - design.bounds[i][0]), 2);
     inverse_ = (Eigen::MatrixXd(basis_.transpose() * basis_) + Eigen::MatrixXd(hold.asDiagonal())).inverse();
     residual_ = weight_.cwiseProduct(s.y);
     residual_ -= basis_ * (inverse_ * (basis_.transpose() * residual_));
@@ -101,8 +105,8 @@ struct family_fit {
 };
 
 /// Gauss-Newton on a family of transfer functions added to the declared equation; theta stays between `low` and `high`.
-[[nodiscard]] inline family_fit fit_family(stick_bench& bench, const transfer_family& family, Eigen::VectorXd theta, double size, const Eigen::VectorXd& low,
-                                           const Eigen::VectorXd& high, int steps) {
+[[nodiscard]] inline family_fit fit_family(stick_bench& bench, const transfer_family& family, Eigen::VectorXd theta, double size,
+                                           const Eigen::VectorXd& low, const Eigen::VectorXd& high, int steps) {
   family_fit out{.theta = theta, .size = size, .covariance = {}};
   Eigen::VectorXd reach = Eigen::VectorXd::Constant(theta.size(), 0.3), last = Eigen::VectorXd::Zero(theta.size());
   for (int step = 0; step <= steps; ++step) {
@@ -143,7 +147,8 @@ struct family_fit {
 
 /// The same as a recursion on a force's samples, for some q at a time: quick, exact enough for a grid. [q][sample]
 template <std::size_t N>
-[[nodiscard]] std::array<std::vector<double>, N> ring(const std::vector<double>& force, double f0, const std::array<double, N>& q, double rate) {
+[[nodiscard]] std::array<std::vector<double>, N> ring(const std::vector<double>& force, double f0, const std::array<double, N>& q,
+                                                      double rate) {
   const double g = std::tan(std::numbers::pi * std::min(f0 / rate, 0.49));
   std::array<std::vector<double>, N> out;
   std::array<double, N> low{}, band{}, back, gain;  // state-variable filters: trapezoidal rule, resonance where it belongs
@@ -205,8 +210,9 @@ template <std::size_t N>
     }
   if (!(best > 0)) return detail::nothing(bench, h);
   const Eigen::Vector2d start(std::log(f_best), std::log(q_best));
-  const auto found = detail::fit_family(bench, detail::rod_mobility, start, 1 / 5e-3, Eigen::Vector2d(std::log(80.0), std::log(3.9)),
-                                       Eigen::Vector2d(std::log(0.16 * rate), std::log(80.0)), 5);
+  const auto found =
+      detail::fit_family(bench, detail::rod_mobility, start, 1 / 5e-3, Eigen::Vector2d(std::log(80.0), std::log(3.9)),
+                         Eigen::Vector2d(std::log(0.16 * rate), std::log(80.0)), 5);
   detail::settle_hypothesis(bench, found.fit, h);
   const double f0 = std::exp(found.theta[0]), q = std::exp(found.theta[1]), mass = found.size > 0 ? 1 / found.size : 1e9;
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -215,7 +221,8 @@ template <std::size_t N>
                     {"q", q, q * std::hypot(sd[2], contact_faults::rod_q)},
                     {"mass_kg", mass, mass * std::hypot(mass * sd[0], contact_faults::rod_mass)}};
   constexpr double heaviest_kg = 0.15;  // modes of rods have grams
-  h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 79;  // inside the range that was searched
+  h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 &&
+              q < 79;  // inside the range that was searched
   return h;
 }
 
@@ -230,7 +237,8 @@ template <std::size_t N>
   const auto columns = [&](double sharp) {
     auto out = force;
     for (std::size_t t = 0; t < out.size(); ++t)
-      for (double& f : out[t]) f = -std::copysign(std::exp(std::min(4.0, (std::abs(f) / takes[t].normal_force_N - 1) / sharp)), f);
+      for (double& f : out[t])
+        f = -std::copysign(std::exp(std::min(4.0, (std::abs(f) / takes[t].normal_force_N - 1) / sharp)), f);
     return out;
   };
   double best = 0, sharp = 0.1;
@@ -259,11 +267,16 @@ template <std::size_t N>
   // How sharp it is, is as sure as the gain is bent there; and with it goes the speed.
   constexpr double apart = 0.05;
   double below = 0, above = 0;
-  const double bend = (2 * best - quick.by(columns(sharp * std::exp(-apart)), below) - quick.by(columns(sharp * std::exp(apart)), above)) / (apart * apart);
+  const double bend =
+      (2 * best - quick.by(columns(sharp * std::exp(-apart)), below) - quick.by(columns(sharp * std::exp(apart)), above)) /
+      (apart * apart);
   const double of_log = bend > 2 ? std::sqrt(2 / bend) : 1;
   const Eigen::Index last = fit.solution.shared.size() - 1;
-  const double speed = fit.solution.shared[last], of_speed = std::hypot(std::sqrt(std::max(0.0, fit.solution.covariance(last, last))), of_log * (above - below) / (2 * apart));
-  h.parameters = {{"speed_at_normal_force_m_s", speed, std::hypot(of_speed, contact_faults::creep * speed)}, {"sharpness", sharp, sharp * std::hypot(of_log, contact_faults::creep)}};
+  const double speed = fit.solution.shared[last],
+               of_speed = std::hypot(std::sqrt(std::max(0.0, fit.solution.covariance(last, last))),
+                                     of_log * (above - below) / (2 * apart));
+  h.parameters = {{"speed_at_normal_force_m_s", speed, std::hypot(of_speed, contact_faults::creep * speed)},
+                  {"sharpness", sharp, sharp * std::hypot(of_log, contact_faults::creep)}};
   return h;
 }
 

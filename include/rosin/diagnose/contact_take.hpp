@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// What the diagnosis of the contact works on, and what it says. In: the bowed takes of one rig, reconstructed, and what the rig's model
-// declares of the contact. Out: hypotheses, each one effect of the catalogue with its parameters, and by how much the takes
+// What the diagnosis of the contact works on, and what it says. In: the bowed takes of one rig, reconstructed, and what the rig's
+// model declares of the contact. Out: hypotheses, each one effect of the catalogue with its parameters, and by how much the takes
 // are likelier with it than without. All gains are in nats and counted in independent samples, so that they can be set
 // against each other: of the same data, what was declared is the common measure (gain 0).
 //
@@ -24,20 +24,21 @@ namespace rosin {
 /// One bowed take after reconstruction; arrays of one length, NaN at both ends where a sample cannot be known.
 struct contact_take {
   std::string name{};
-  std::span<const double> force_N{}, velocity_m_s{};                    ///< mean of both versions; the string's centre
-  std::span<const double> velocity_near_m_s{}, velocity_far_m_s{};      ///< the versions, if there are: how far they can be trusted
-  std::span<const double> near_N{}, far_N{};                            ///< calibrated forces on the terminations, if a contact of some width is to be tried
+  std::span<const double> force_N{}, velocity_m_s{};                ///< mean of both versions; the string's centre
+  std::span<const double> velocity_near_m_s{}, velocity_far_m_s{};  ///< the versions, if there are: how far they can be trusted
+  std::span<const double> near_N{},
+      far_N{};  ///< calibrated forces on the terminations, if a contact of some width is to be tried
   double rate_Hz = 0;
-  double rod_speed_m_s = 0, normal_force_N = 0;                         ///< declared; steady
-  std::array<double, 2> delay_s{};                                      ///< transverse travel times to the ends
-  std::array<string_side, 2> sides{};                                   ///< what the string carries and ends on, for the same
-  double stiffness_s2 = 0, inverse_q = 0;                               ///< of the transverse waves, for a contact of some width
-  double impedance_Ns_m = 0, length_m = 0;                              ///< length 0: unknown
-  double force_sd_N = 0, velocity_sd_m_s = 0;                           ///< random, of one sample
-  std::array<double, 2> noise_N{};                                      ///< of one sample of near_N, far_N
-  double level_sd_N = 0;                                                ///< of the force's mean, where AC-coupled sensors lost it; 0: known
-  double edge_Hz = 0;                                                   ///< where the reconstruction's band ends; 0: 0.45 of the rate
-  double start_s = 0.03;                                                ///< until the stroke is steady
+  double rod_speed_m_s = 0, normal_force_N = 0;  ///< declared; steady
+  std::array<double, 2> delay_s{};               ///< transverse travel times to the ends
+  std::array<string_side, 2> sides{};            ///< what the string carries and ends on, for the same
+  double stiffness_s2 = 0, inverse_q = 0;        ///< of the transverse waves, for a contact of some width
+  double impedance_Ns_m = 0, length_m = 0;       ///< length 0: unknown
+  double force_sd_N = 0, velocity_sd_m_s = 0;    ///< random, of one sample
+  std::array<double, 2> noise_N{};               ///< of one sample of near_N, far_N
+  double level_sd_N = 0;                         ///< of the force's mean, where AC-coupled sensors lost it; 0: known
+  double edge_Hz = 0;                            ///< where the reconstruction's band ends; 0: 0.45 of the rate
+  double start_s = 0.03;                         ///< until the stroke is steady
 };
 
 enum class contact_law { velocity_curve, thermal, elasto_plastic };
@@ -47,19 +48,21 @@ struct contact_model {
   std::optional<torsion_values> torsion{};
   Eigen::Vector3d torsion_tolerance{0.002, 0.01, 0.03};  ///< relative sd of declared speed, impedance and q
   contact_law law = contact_law::velocity_curve;
-  std::vector<std::string> included{};                   ///< effects found before and kept
-  std::optional<std::array<double, 3>> rod{};            ///< frequency (Hz), q, mass (kg) of a rod that resonates
+  std::vector<std::string> included{};         ///< effects found before and kept
+  std::optional<std::array<double, 3>> rod{};  ///< frequency (Hz), q, mass (kg) of a rod that resonates
   std::optional<double> bristle_stiffness_N_m{}, bristle_delay_s{};
   bristle_yield yields{};
   std::optional<double> speed_ripple_Hz{}, normal_ripple_Hz{};
-  double width_s = 0;                                    ///< travel time of transverse waves over a contact of some width; 0: a point
-  double edge_Hz = 0;                                    ///< beyond it noise takes over what is included; 0: nowhere
+  double width_s = 0;  ///< travel time of transverse waves over a contact of some width; 0: a point
+  double edge_Hz = 0;  ///< beyond it noise takes over what is included; 0: nowhere
 };
 
-/// By how much the contact's parameters come out wrong beside what noise does, as a share of each: what band, gains and torsion leave in a
-/// reconstruction. Found on strokes of another simulator (rosin challenge), where noise alone would have given a tenth of it.
+/// By how much the contact's parameters come out wrong beside what noise does, as a share of each: what band, gains and torsion
+/// leave in a reconstruction. Found on strokes of another simulator (rosin challenge), where noise alone would have given a tenth
+/// of it.
 namespace contact_faults {
-inline constexpr double rod_frequency = 6e-4, rod_q = 0.012, rod_mass = 0.013, ripple = 0.009, slip_tone = 7e-5, bristles = 0.035, creep = 0.1;
+inline constexpr double rod_frequency = 6e-4, rod_q = 0.012, rod_mass = 0.013, ripple = 0.009, slip_tone = 7e-5, bristles = 0.035,
+                        creep = 0.1;
 }
 
 struct contact_parameter {
@@ -75,22 +78,25 @@ struct contact_trace {
 };
 
 struct contact_hypothesis {
-  std::string effect;                          ///< name in the catalogue
+  std::string effect;  ///< name in the catalogue
   std::vector<contact_parameter> parameters{};
-  double gain = 0;                             ///< log-likelihood of all takes over that of the model as declared, nats
-  double held_out_gain = 0;                    ///< of each take predicted from the others (or half from half), nats
+  double gain = 0;           ///< log-likelihood of all takes over that of the model as declared, nats
+  double held_out_gain = 0;  ///< of each take predicted from the others (or half from half), nats
   int free_parameters = 0;
-  double density = 0, held_out_density = 0, share = 1; ///< sums of log densities over the declared model's, and independent rows / rows
-  double fluctuation = 0;                      ///< what is left of the statistic: relative to the rod's speed, or to the force
-  double noise = 0;                            ///< what the sensors' noise alone leaves of it, where that differs from the findings' floor; else 0
-  double edge_Hz = 0;                          ///< band that its parameters are from, where that is narrower than the takes'; else 0
-  double width_s = 0;                          ///< travel time over the width, where that is the effect
-  std::string statistic{};                     ///< "stick-fluctuation" or "friction-residual"
-  bool decided = true;                         ///< the parameters are determined
+  double density = 0, held_out_density = 0,
+         share = 1;         ///< sums of log densities over the declared model's, and independent rows / rows
+  double fluctuation = 0;   ///< what is left of the statistic: relative to the rod's speed, or to the force
+  double noise = 0;         ///< what the sensors' noise alone leaves of it, where that differs from the findings' floor; else 0
+  double edge_Hz = 0;       ///< band that its parameters are from, where that is narrower than the takes'; else 0
+  double width_s = 0;       ///< travel time over the width, where that is the effect
+  std::string statistic{};  ///< "stick-fluctuation" or "friction-residual"
+  bool decided = true;      ///< the parameters are determined
   std::vector<contact_trace> before{}, after{};  ///< where that is not what the findings show of the models with and without it
 
   /// Gain less half a logarithm of the independent samples for each parameter (Schwarz).
-  [[nodiscard]] double evidence(double independent) const noexcept { return gain - 0.5 * free_parameters * std::log(std::max(1.0, independent)); }
+  [[nodiscard]] double evidence(double independent) const noexcept {
+    return gain - 0.5 * free_parameters * std::log(std::max(1.0, independent));
+  }
 };
 
 /// The model with an effect that was found.

@@ -1,10 +1,10 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Whether the contact has some width. Each end of the string then tells of the place that is nearer to it, and a reconstruction of one
-// point between them finds its two versions at odds. While they stick, both places (wide_record.hpp) move with the rod, torsion
-// included. The width is the one that makes that so at both, with torsion free as far as it may be off; w = 0, the declared
-// contact, is what it is measured against.
+// Whether the contact has some width. Each end of the string then tells of the place that is nearer to it, and a reconstruction
+// of one point between them finds its two versions at odds. While they stick, both places (wide_record.hpp) move with the rod,
+// torsion included. The width is the one that makes that so at both, with torsion free as far as it may be off; w = 0, the
+// declared contact, is what it is measured against.
 //
 #pragma once
 
@@ -40,7 +40,8 @@ namespace detail {
 }
 
 /// Samples at which both places stick, of each take.
-[[nodiscard]] inline std::vector<std::vector<char>> sticking_at_both(const std::vector<stick_record>& records, std::vector<wide_record>& wide, double half_delay_s,
+[[nodiscard]] inline std::vector<std::vector<char>> sticking_at_both(const std::vector<stick_record>& records,
+                                                                     std::vector<wide_record>& wide, double half_delay_s,
                                                                      double below, const torsion_values& torsion) {
   std::vector<std::vector<char>> marked;
   for (std::size_t t = 0; t < records.size(); ++t) {
@@ -67,16 +68,19 @@ struct width_model {
   double below = 0;  ///< the half delay whose pole ends the band
 };
 
-/// The stick equation at both places, of all takes, on the samples that are marked. Shared columns: compliance, the slopes of torsion's
-/// three logarithms, and of the width's where there is one.
-[[nodiscard]] inline stick_design width_design(stick_bench& bench, std::vector<wide_record>& wide, const std::vector<std::vector<char>>& marked, const width_model& m) {
+/// The stick equation at both places, of all takes, on the samples that are marked. Shared columns: compliance, the slopes of
+/// torsion's three logarithms, and of the width's where there is one.
+[[nodiscard]] inline stick_design width_design(stick_bench& bench, std::vector<wide_record>& wide,
+                                               const std::vector<std::vector<char>>& marked, const width_model& m) {
   stick_design d;
   for (std::size_t t = 0; t < wide.size(); ++t) {
     const smooth_window window = wide_record::below_pole(bench.records()[t].window(), m.below);
     const wide_motion here = wide[t].at(m.half_delay_s, window, m.torsion, m.damping);
-    std::array<std::vector<std::vector<double>>, 2> shared{std::vector(here.compliance.begin(), here.compliance.end()), std::vector(here.compliance.begin(), here.compliance.end())};
+    std::array<std::vector<std::vector<double>>, 2> shared{std::vector(here.compliance.begin(), here.compliance.end()),
+                                                           std::vector(here.compliance.begin(), here.compliance.end())};
     const auto add_slope = [&](const width_model& up, const width_model& down, double step) {
-      const wide_motion high = wide[t].at(up.half_delay_s, window, up.torsion, up.damping), low = wide[t].at(down.half_delay_s, window, down.torsion, down.damping);
+      const wide_motion high = wide[t].at(up.half_delay_s, window, up.torsion, up.damping),
+                        low = wide[t].at(down.half_delay_s, window, down.torsion, down.damping);
       for (const std::size_t place : {0U, 1U}) {
         auto slope = place == 0 ? high.near_m_s : high.far_m_s;
         add_to(slope, place == 0 ? low.near_m_s : low.far_m_s, -1);
@@ -105,7 +109,9 @@ struct width_model {
     }
   }
   for (int k = 0; k < 2; ++k) d.add_bound(-30, 30);
-  for (int k = 0; k < 3; ++k) d.add_bound(bench.model().torsion ? -2 * bench.model().torsion_tolerance[k] : -1.0, bench.model().torsion ? 2 * bench.model().torsion_tolerance[k] : 1.0);
+  for (int k = 0; k < 3; ++k)
+    d.add_bound(bench.model().torsion ? -2 * bench.model().torsion_tolerance[k] : -1.0,
+                bench.model().torsion ? 2 * bench.model().torsion_tolerance[k] : 1.0);
   if (m.half_delay_s > 0) d.add_bound(-0.2, 0.2);
   return d;
 }
@@ -117,7 +123,8 @@ struct settled_width {
 };
 
 /// The width settled by Gauss-Newton steps, with whichever convention of torsional damping leaves less.
-[[nodiscard]] inline settled_width settle_width(stick_bench& bench, std::vector<wide_record>& wide, const std::vector<std::vector<char>>& marked, double floor, width_model m) {
+[[nodiscard]] inline settled_width settle_width(stick_bench& bench, std::vector<wide_record>& wide,
+                                                const std::vector<std::vector<char>>& marked, double floor, width_model m) {
   const auto settled = [&](torsion_damping damping) {
     settled_width out{m, {}, {}};
     out.model.damping = damping;
@@ -135,8 +142,11 @@ struct settled_width {
 }  // namespace detail
 
 /// Nothing where the terminations' forces are not given, or both versions agree so well that there is no width to see.
-[[nodiscard]] inline std::optional<contact_hypothesis> width_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes) {
-  const auto torsion = bench.model().torsion ? bench.model().torsion : bench.free_torsion() ? std::optional(bench.free_torsion()->value) : std::nullopt;
+[[nodiscard]] inline std::optional<contact_hypothesis> width_hypothesis(stick_bench& bench,
+                                                                        const std::vector<contact_take>& takes) {
+  const auto torsion = bench.model().torsion  ? bench.model().torsion
+                       : bench.free_torsion() ? std::optional(bench.free_torsion()->value)
+                                              : std::nullopt;
   if (bench.records().empty() || !torsion || bench.floor_m_s() < 0.01 * bench.speed_m_s()) return std::nullopt;
   for (const auto& t : takes)
     if (t.near_N.size() != t.force_N.size() || t.far_N.size() != t.force_N.size()) return std::nullopt;
@@ -150,7 +160,8 @@ struct settled_width {
   if (!detail::enough(marked)) marked = detail::sticking_at_both(records, wide, best, below = 0, *torsion);
   if (!detail::enough(marked)) return std::nullopt;
   const double floor = 1e-3 * bench.speed_m_s();
-  const auto found = detail::settle_width(bench, wide, marked, floor, {.half_delay_s = best, .torsion = *torsion, .below = below});
+  const auto found =
+      detail::settle_width(bench, wide, marked, floor, {.half_delay_s = best, .torsion = *torsion, .below = below});
   const auto point = detail::settle_width(bench, wide, marked, floor, {.torsion = *torsion, .below = below});
   const auto &wide_fit = found.fit, &point_fit = point.fit;
   best = found.model.half_delay_s;
@@ -164,16 +175,23 @@ struct settled_width {
   h.held_out_gain = h.share * h.held_out_density;
   h.fluctuation = wide_fit.solution.scale / bench.speed_m_s();
   for (std::size_t t = 0; t < takes.size(); ++t)
-    h.noise = std::max(h.noise, wide[t].noise_m_s(best, wide_record::below_pole(records[t].window(), below), found.model.torsion, found.model.damping) / bench.speed_m_s());
+    h.noise = std::max(h.noise, wide[t].noise_m_s(best, wide_record::below_pole(records[t].window(), below), found.model.torsion,
+                                                  found.model.damping) /
+                                    bench.speed_m_s());
   for (std::size_t t = 0; t < takes.size(); ++t) {  // the place that is nearer to the near end stands for both
-    h.before.push_back(detail::sticking_trace(bench, found.design.rows[2 * t], point_fit.solution.residual[2 * t], t, takes[t].name));
-    h.after.push_back(detail::sticking_trace(bench, found.design.rows[2 * t], wide_fit.solution.residual[2 * t], t, takes[t].name));
+    h.before.push_back(
+        detail::sticking_trace(bench, found.design.rows[2 * t], point_fit.solution.residual[2 * t], t, takes[t].name));
+    h.after.push_back(
+        detail::sticking_trace(bench, found.design.rows[2 * t], wide_fit.solution.residual[2 * t], t, takes[t].name));
   }
-  const double one_way = takes[0].delay_s[0] + takes[0].delay_s[1], metres = takes[0].length_m > 0 ? takes[0].length_m / one_way : 0;
+  const double one_way = takes[0].delay_s[0] + takes[0].delay_s[1],
+               metres = takes[0].length_m > 0 ? takes[0].length_m / one_way : 0;
   const double doubt = 0.02 + 2e-7 / best;  // of what rolling and near field do between the two places
-  h.parameters = {{metres > 0 ? "width_m" : "width_s", 2 * best * (metres > 0 ? metres : 1.0), 2 * best * doubt * (metres > 0 ? metres : 1.0)}};
+  h.parameters = {{metres > 0 ? "width_m" : "width_s", 2 * best * (metres > 0 ? metres : 1.0),
+                   2 * best * doubt * (metres > 0 ? metres : 1.0)}};
   h.width_s = 2 * best;
-  h.decided = best > 5e-7 && wide_fit.solution.scale < 0.7 * point_fit.solution.scale && h.fluctuation < 0.07;  // both really stick
+  // both really stick
+  h.decided = best > 5e-7 && wide_fit.solution.scale < 0.7 * point_fit.solution.scale && h.fluctuation < 0.07;
   return h;
 }
 

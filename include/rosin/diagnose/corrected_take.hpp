@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Bowed takes without what the sensors did to them, once plucks have told what that is: each channel's own response divided out in
-// the frequency domain, crosstalk inverted, mains hum taken out, a curved characteristic straightened, another clock's samples read at the
-// instants of the first. Recorded nominal newtons in and out. Effects on the string itself are not undone here.
+// Bowed takes without what the sensors did to them, once plucks have told what that is: each channel's own response divided out
+// in the frequency domain, crosstalk inverted, mains hum taken out, a curved characteristic straightened, another clock's samples
+// read at the instants of the first. Recorded nominal newtons in and out. Effects on the string itself are not undone here.
 //
 #pragma once
 
@@ -25,7 +25,8 @@ inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmon
       basis(i, 2 * h) = std::cos(turn), basis(i, 2 * h + 1) = std::sin(turn);
     }
   Eigen::Map<Eigen::VectorXd> data(x.data(), n);
-  const Eigen::ArrayXd turn = Eigen::ArrayXd::LinSpaced(n, 0.5, static_cast<double>(n) - 0.5) * (std::numbers::pi / static_cast<double>(n));
+  const Eigen::ArrayXd turn =
+      Eigen::ArrayXd::LinSpaced(n, 0.5, static_cast<double>(n) - 0.5) * (std::numbers::pi / static_cast<double>(n));
   const Eigen::MatrixXd weighed = turn.sin().square().matrix().asDiagonal() * basis;
   Eigen::VectorXd amplitude = (basis.transpose() * weighed).ldlt().solve(weighed.transpose() * data);
   amplitude[2 * harmonics] = 0;
@@ -34,7 +35,8 @@ inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmon
 
 }  // namespace detail
 
-/// Whether nothing sits on the string and its ends are rigid. A second polarisation does not count: the bow moves one of them only.
+/// Whether nothing sits on the string and its ends are rigid. A second polarisation does not count: the bow moves one of them
+/// only.
 [[nodiscard]] inline bool string_is_plain(const pluck_guess& known, const std::vector<pluck_effect>& effects) {
   return !known.has_ends() && std::none_of(effects.begin(), effects.end(), [](const pluck_effect& e) {
     return e.at_end || e.name == "point-mass" || e.name == "point-damper";
@@ -42,7 +44,8 @@ inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmon
 }
 
 /// In place, near and far.
-inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::array<std::vector<double>, 2>& recorded, double rate_Hz, double edge_Hz) {
+inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::array<std::vector<double>, 2>& recorded,
+                         double rate_Hz, double edge_Hz) {
   const pluck_scene scene = scene_of(data, fit);
   Eigen::Index at = data.layout.size();
   for (const pluck_effect& e : fit.effects) {

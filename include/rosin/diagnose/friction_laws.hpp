@@ -1,17 +1,17 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Laws of friction set against reconstructed slips, with no simulation that runs freely: each law is driven along the reconstructed
-// motion, through the same window, and asked for the force.
+// Laws of friction set against reconstructed slips, with no simulation that runs freely: each law is driven along the
+// reconstructed motion, through the same window, and asked for the force.
 //
 //     velocity curve   f = N mu(|v_r|)
 //     thermal          f = N mu(Theta),   dTheta/dt = |f v_r| / N^p - (a + b sqrt|v_r| + c |v_r|) Theta
 //
 // with mu a spline of as many coefficients in either, common to all takes. The thermal contact has one temperature, cooled by
-// what it conducts away (a into the string, b into a rod whose surface is renewed by sliding) and by the material that slides out (c);
-// p says whether its heat capacity grows with the normal force. The whole heat memory of friction/contact_heat.hpp is tried besides. Heat that is
-// gone within a few samples would be no memory but the force itself: the rates are bounded. Coefficients and rates are fitted by least squares
-// with Student's t, and each take is predicted from the others.
+// what it conducts away (a into the string, b into a rod whose surface is renewed by sliding) and by the material that slides out
+// (c); p says whether its heat capacity grows with the normal force. The whole heat memory of friction/contact_heat.hpp is tried
+// besides. Heat that is gone within a few samples would be no memory but the force itself: the rates are bounded. Coefficients
+// and rates are fitted by least squares with Student's t, and each take is predicted from the others.
 //
 #pragma once
 
@@ -49,9 +49,15 @@ struct law_fit {
   std::vector<slip_record> out;
   for (std::size_t t = 0; t < bench.records().size(); ++t) {
     auto& record = bench.records()[t];
-    slip_record r{record.force_through([](double) { return 1.0; }), bench.relative_m_s()[t], {}, {}, takes[t].normal_force_N, takes[t].rate_Hz};
+    slip_record r{record.force_through([](double) { return 1.0; }),
+                  bench.relative_m_s()[t],
+                  {},
+                  {},
+                  takes[t].normal_force_N,
+                  takes[t].rate_Hz};
     const std::size_t begin = record.begin();
-    r.phases = find_phases(std::span(r.relative_m_s).subspan(0, record.end()).subspan(begin), takes[t].rod_speed_m_s, {.least = 0.1, .most = 0.5, .fluctuations = 5});
+    r.phases = find_phases(std::span(r.relative_m_s).subspan(0, record.end()).subspan(begin), takes[t].rod_speed_m_s,
+                           {.least = 0.1, .most = 0.5, .fluctuations = 5});
     for (auto* list : {&r.phases.sticks, &r.phases.slips})
       for (auto& s : *list) s.begin += begin, s.end += begin;
     for (std::size_t margin = record.reach() - 1; margin + 3 > record.reach() && r.slips.sample.size() < 600; --margin)
@@ -63,13 +69,16 @@ struct law_fit {
 
 namespace detail {
 
-[[nodiscard]] inline std::vector<double> one_temperature(const slip_record& r, const std::vector<char>& slipping, const thermal_rates& k) {
+[[nodiscard]] inline std::vector<double> one_temperature(const slip_record& r, const std::vector<char>& slipping,
+                                                         const thermal_rates& k) {
   std::vector<double> rise(r.relative_m_s.size());
-  const double step = 1 / r.rate_Hz, scale = 1e3 / std::pow(r.normal_N, k.capacity_power), rest = std::exp(-k.conduction_1_s * step);
+  const double step = 1 / r.rate_Hz, scale = 1e3 / std::pow(r.normal_N, k.capacity_power),
+               rest = std::exp(-k.conduction_1_s * step);
   double now = 0;
   const auto advance = [&](std::size_t i) {
     if (!slipping[i]) return now *= rest;
-    const double v = std::abs(r.relative_m_s[i] - r.phases.level_m_s), rate = k.conduction_1_s + k.renewal * std::sqrt(v) + k.exchange_1_m * v;
+    const double v = std::abs(r.relative_m_s[i] - r.phases.level_m_s),
+                 rate = k.conduction_1_s + k.renewal * std::sqrt(v) + k.exchange_1_m * v;
     const double x = rate * step, keep = std::exp(-x);
     return now = now * keep + scale * v * std::abs(r.force_N[i]) * (x > 1e-9 ? (1 - keep) / rate : step);
   };
@@ -79,7 +88,8 @@ namespace detail {
   return rise;
 }
 
-/// A few rows more, hardly of weight: where a take has no samples the spline goes on straight, so that it can predict another take.
+/// A few rows more, hardly of weight: where a take has no samples the spline goes on straight, so that it can predict another
+/// take.
 inline void keep_smooth(stick_rows& rows, double weight = 0.1) {
   const Eigen::Index n = rows.target.size(), extra = rows.shared.cols() - 2;
   rows.target.conservativeResize(n + extra);
@@ -93,8 +103,8 @@ inline void keep_smooth(stick_rows& rows, double weight = 0.1) {
   }
 }
 
-/// Strokes that may be off against the first by a constant each: a column of its own for each but the first, of which the rows that keep
-/// the law smooth have nothing.
+/// Strokes that may be off against the first by a constant each: a column of its own for each but the first, of which the rows
+/// that keep the law smooth have nothing.
 inline void free_levels(stick_design& d) {
   for (std::size_t t = 1; t < d.rows.size(); ++t) {
     auto& rows = d.rows[t];
@@ -105,7 +115,8 @@ inline void free_levels(stick_design& d) {
 }
 
 /// Rows of the spline equation for one x per sample and take; every `stride`-th slip sample.
-[[nodiscard]] inline stick_design law_design(const std::vector<slip_record>& records, const std::vector<Eigen::VectorXd>& x, std::size_t stride) {
+[[nodiscard]] inline stick_design law_design(const std::vector<slip_record>& records, const std::vector<Eigen::VectorXd>& x,
+                                             std::size_t stride) {
   std::vector<double> all;
   for (const auto& v : x) all.insert(all.end(), v.data(), v.data() + v.size());
   const smooth_functions functions(all);
@@ -133,12 +144,13 @@ inline void free_levels(stick_design& d) {
 /// What a law remembers, at the slips: the value of the sample before.
 [[nodiscard]] inline Eigen::VectorXd before_slips(const slip_record& r, const std::vector<double>& memory) {
   Eigen::VectorXd x(static_cast<Eigen::Index>(r.slips.sample.size()));
-  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = memory[std::max<std::size_t>(1, r.slips.sample[static_cast<std::size_t>(i)]) - 1];
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    x[i] = memory[std::max<std::size_t>(1, r.slips.sample[static_cast<std::size_t>(i)]) - 1];
   return x;
 }
 
-/// What a design leaves, quickly, for a search: the inverse of the geometric mean of Student's densities, a few passes of reweighting.
-/// (Ordinary least squares would follow the few samples at which a slip was cut too late.)
+/// What a design leaves, quickly, for a search: the inverse of the geometric mean of Student's densities, a few passes of
+/// reweighting. (Ordinary least squares would follow the few samples at which a slip was cut too late.)
 [[nodiscard]] inline double quick_residual(const stick_design& d, double floor = 1e-6) {
   const stacked s = stack(d.rows);
   const Eigen::Index n = std::max<Eigen::Index>(1, s.y.size());
@@ -184,28 +196,44 @@ template <class Memory>
 [[nodiscard]] inline law_fit fit_thermal(const std::vector<slip_record>& records, double floor) {
   std::vector<std::vector<char>> slipping;
   std::size_t samples = 0;
-  for (const auto& r : records) slipping.push_back(interior(r.phases.slips, r.relative_m_s.size(), 0)), samples += r.slips.sample.size();
+  for (const auto& r : records)
+    slipping.push_back(interior(r.phases.slips, r.relative_m_s.size(), 0)), samples += r.slips.sample.size();
   const std::size_t stride = std::max<std::size_t>(2, samples / 6000);
   const auto design = [&](const thermal_rates& k, std::size_t every) {
-    return detail::memory_design(records, [&](std::size_t t) { return detail::one_temperature(records[t], slipping[t], k); }, every);
+    return detail::memory_design(
+        records, [&](std::size_t t) { return detail::one_temperature(records[t], slipping[t], k); }, every);
   };
   law_fit out;
   out.law = contact_law::thermal;
   double best = 1e300;
   const auto attempt = [&](thermal_rates k) {
-    if (!(k.conduction_1_s + k.renewal + k.exchange_1_m > 0) || k.conduction_1_s > 5e3 || k.renewal > 1e4 || k.exchange_1_m > 1.2e4) return 1e300;
+    if (!(k.conduction_1_s + k.renewal + k.exchange_1_m > 0) || k.conduction_1_s > 5e3 || k.renewal > 1e4 ||
+        k.exchange_1_m > 1.2e4)
+      return 1e300;
     const double r = detail::quick_residual(design(k, stride));
     if (r < best) best = r, out.rates = k;
     return r;
   };
-  const auto scaled = [](double rate, double by) { return rate > 0 ? (rate * by < 2 ? 0.0 : rate * by) : by > 1 ? 20 * by : 0.0; };
+  const auto scaled = [](double rate, double by) {
+    return rate > 0 ? (rate * by < 2 ? 0.0 : rate * by) : by > 1 ? 20 * by : 0.0;
+  };
   const auto descend = [&](double smallest) {
     for (double factor = 2.5; factor > smallest; factor = std::sqrt(factor))
       for (int round = 0; round < 8; ++round) {  // the valley runs across a and c: their directions together, then b's
         const double before = best;
         const thermal_rates from = out.rates;
-        for (const auto& [i, j, k] : {std::array{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, 1}, {-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {0, 1, 0}, {0, -1, 0}})
-          attempt({scaled(from.conduction_1_s, std::pow(factor, i)), scaled(from.renewal, j == 0 ? 1.0 : std::pow(factor, j)), scaled(from.exchange_1_m, std::pow(factor, k)), from.capacity_power});
+        for (const auto& [i, j, k] : {std::array{1, 0, 0},
+                                      {-1, 0, 0},
+                                      {0, 0, 1},
+                                      {0, 0, -1},
+                                      {1, 0, 1},
+                                      {-1, 0, -1},
+                                      {1, 0, -1},
+                                      {-1, 0, 1},
+                                      {0, 1, 0},
+                                      {0, -1, 0}})
+          attempt({scaled(from.conduction_1_s, std::pow(factor, i)), scaled(from.renewal, j == 0 ? 1.0 : std::pow(factor, j)),
+                   scaled(from.exchange_1_m, std::pow(factor, k)), from.capacity_power});
         if (!(best < 0.999 * before)) break;
       }
   };
@@ -225,7 +253,8 @@ template <class Memory>
   contact_heat_parameters<double> found;
   const auto remember = [&](double layer, double area) {
     const contact_heat_parameters<double> heat{.layer_m = layer, .area_per_newton_m2 = area};
-    const double r = detail::quick_residual(detail::memory_design(records, [&](std::size_t t) { return detail::heat_along(records[t], heat); }, stride));
+    const double r = detail::quick_residual(detail::memory_design(
+        records, [&](std::size_t t) { return detail::heat_along(records[t], heat); }, stride));
     if (r < best_memory) best_memory = r, found = heat;
   };
   for (const double layer : {1e-6, 3.5e-6})
@@ -235,13 +264,15 @@ template <class Memory>
       for (int round = 0; round < 4; ++round) {
         const double before = best_memory;
         const auto from = found;
-        for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) remember(from.layer_m * std::pow(factor, i), from.area_per_newton_m2 * std::pow(factor, j));
+        for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+          remember(from.layer_m * std::pow(factor, i), from.area_per_newton_m2 * std::pow(factor, j));
         if (!(best_memory < 0.999 * before)) break;
       }
   if (best_memory < best) out.heat_memory = true, out.heat = found;
   if (!out.heat_memory) out.design = design(out.rates, 2);
   else
-    out.design = detail::memory_design(records, [&](std::size_t t) { return detail::heat_along(records[t], out.heat); }, 2);
+    out.design = detail::memory_design(
+        records, [&](std::size_t t) { return detail::heat_along(records[t], out.heat); }, 2);
   out.fit = fit_design(out.design, floor);
   return out;
 }

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Mains hum: lines at the mains' frequency and at what rectifiers and transformers add, but for those near a partial of the string; every
-// take has its own phases. Sought in what a fit leaves: there all lines together have to take away more
+// Mains hum: lines at the mains' frequency and at what rectifiers and transformers add, but for those near a partial of the
+// string; every take has its own phases. Sought in what a fit leaves: there all lines together have to take away more
 // than noise would give them,
 //
 //     gain of ln L = (n / 2) sum over channels of ln(power before / power after)  >  k / 2 + sqrt(k / 2),   k amplitudes.
@@ -21,8 +21,8 @@ namespace detail {
 
 /// Least squares of lines at these frequencies in what is left of both channels.
 struct lines_in_rest {
-  double gain = 0;               ///< of ln L
-  std::vector<double> parts_N;   ///< re and im of near, of far, line by line: Re(a exp(2 pi i f t)), t from the take's beginning
+  double gain = 0;              ///< of ln L
+  std::vector<double> parts_N;  ///< re and im of near, of far, line by line: Re(a exp(2 pi i f t)), t from the take's beginning
 };
 
 inline lines_in_rest lines_at(const take_residual& rest, const std::vector<double>& frequencies_Hz) {
@@ -53,9 +53,13 @@ inline lines_in_rest lines_at(const take_residual& rest, const std::vector<doubl
 inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
   std::vector<double> multiples{1};
   for (const double m : {2.0, 3.0, 4.0, 5.0, 7.0})
-    if (const double order = m * mains_Hz / f.fundamental_Hz; std::abs(order - std::max(1.0, std::round(order))) > 0.05) multiples.push_back(m);
+    if (const double order = m * mains_Hz / f.fundamental_Hz; std::abs(order - std::max(1.0, std::round(order))) > 0.05)
+      multiples.push_back(m);
   const std::size_t of_take = 4 * multiples.size();
-  pluck_effect e{"mains-hum", -1, false, {{"frequency_Hz", mains_Hz - 0.6, mains_Hz + 0.6, 1e-6, true}}, {{mains_Hz}}, -1, {}};
+  pluck_effect e{.name = "mains-hum",
+                 .parameters = {{"frequency_Hz", mains_Hz - 0.6, mains_Hz + 0.6, 1e-6, true}},
+                 .starts = {{mains_Hz}},
+                 .strength = -1};
   for (std::size_t i = 0; i < f.takes * of_take; ++i) {
     e.parameters.push_back({"amplitude", -100, 100, 1e-5, false, static_cast<int>(i / of_take)});
     e.starts[0].push_back(0);

@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// What the plucks of a rig can tell apart, before any of them is made. Every effect, at typical places and frequencies, changes the
-// recordings that the declared string would give by d; what the nuisances (pitch, stiffness, loss, position, gains, release, strength, offsets)
-// can imitate is projected out,
+// What the plucks of a rig can tell apart, before any of them is made. Every effect, at typical places and frequencies, changes
+// the recordings that the declared string would give by d; what the nuisances (pitch, stiffness, loss, position, gains, release,
+// strength, offsets) can imitate is projected out,
 //
 //     d' = d - J (J'J)^-1 J'd,        cos(A, B) = max over B's starting points of |d'_A . d'_B| / (|d'_A| |d'_B|),
 //
@@ -19,11 +19,11 @@
 namespace rosin {
 
 struct isolability {
-  std::vector<std::string> ids;            ///< effects, with their place
-  std::vector<std::string> strength;       ///< name of the parameter that the effect vanishes with; empty: none does
-  Eigen::VectorXd detectable;              ///< its value at five standard deviations; NaN where there is none, or none is enough
-  Eigen::VectorXd surviving;               ///< |d'| / |d|
-  Eigen::MatrixXd cosine;                  ///< symmetric, 1 on the diagonal
+  std::vector<std::string> ids;       ///< effects, with their place
+  std::vector<std::string> strength;  ///< name of the parameter that the effect vanishes with; empty: none does
+  Eigen::VectorXd detectable;         ///< its value at five standard deviations; NaN where there is none, or none is enough
+  Eigen::VectorXd surviving;          ///< |d'| / |d|
+  Eigen::MatrixXd cosine;             ///< symmetric, 1 on the diagonal
   [[nodiscard]] std::vector<std::vector<std::size_t>> classes(double above = 0.95) const {
     std::vector<std::vector<std::size_t>> out;
     std::vector<bool> seen(ids.size(), false);
@@ -33,7 +33,8 @@ struct isolability {
       seen[first] = true;
       for (std::size_t k = 0; k < members.size(); ++k)
         for (std::size_t j = 0; j < ids.size(); ++j)
-          if (!seen[j] && cosine(static_cast<Eigen::Index>(members[k]), static_cast<Eigen::Index>(j)) > above) seen[j] = true, members.push_back(j);
+          if (!seen[j] && cosine(static_cast<Eigen::Index>(members[k]), static_cast<Eigen::Index>(j)) > above)
+            seen[j] = true, members.push_back(j);
       out.push_back(std::move(members));
     }
     return out;
@@ -82,7 +83,8 @@ public:
     const Eigen::Index plain = value_.size();
     Eigen::VectorXd v(plain + static_cast<Eigen::Index>(values.size()));
     v.head(plain) = value_;
-    for (std::size_t q = 0; q < values.size(); ++q) v[plain + static_cast<Eigen::Index>(q)] = to_fitted(e.parameters[q], values[q]);
+    for (std::size_t q = 0; q < values.size(); ++q)
+      v[plain + static_cast<Eigen::Index>(q)] = to_fitted(e.parameters[q], values[q]);
     if (e.rebase) e.rebase(layout_, v);
     return of({e}, v) - plain_;
   }
@@ -137,7 +139,9 @@ private:
     }
     return out;
   }
-  [[nodiscard]] Eigen::Index samples(std::size_t t) const { return static_cast<Eigen::Index>(std::lround(plan_.duration_s * plan_.takes[t].rate_Hz)); }
+  [[nodiscard]] Eigen::Index samples(std::size_t t) const {
+    return static_cast<Eigen::Index>(std::lround(plan_.duration_s * plan_.takes[t].rate_Hz));
+  }
   [[nodiscard]] Eigen::Index rows() const {
     Eigen::Index n = 0;
     for (std::size_t t = 0; t < plan_.takes.size(); ++t) n += 2 * samples(t);
@@ -157,10 +161,11 @@ private:
   return out;
 }
 
-/// How small an effect may be to change the recordings by `target` of what it changes at `values`; `change(values)`: by how much, relative to that.
-/// What works on recordings does so in proportion, all else as a power that is found on the way.
+/// How small an effect may be to change the recordings by `target` of what it changes at `values`; `change(values)`: by how much,
+/// relative to that. What works on recordings does so in proportion, all else as a power that is found on the way.
 template <class Change>
-[[nodiscard]] double least_seen(const pluck_effect& e, int size, std::vector<double> values, double target, const Change& change) {
+[[nodiscard]] double least_seen(const pluck_effect& e, int size, std::vector<double> values, double target,
+                                const Change& change) {
   const auto i = static_cast<std::size_t>(size);
   if (e.undo) return values[i] * target;
   double power = 1, now = 1;
@@ -172,12 +177,14 @@ template <class Change>
     power = std::clamp(std::log(now / was) / std::log(values[i] / before), 0.2, 5.0);
   }
   const bool vanishes = power > 0.3;  // not where a weak mode stands upon a partial and the lines of the two cannot be told apart
-  return now < 0.9 * target || !vanishes ? std::numeric_limits<double>::quiet_NaN() : values[i];  // nor if not seen even at its largest
+  return now < 0.9 * target || !vanishes ? std::numeric_limits<double>::quiet_NaN()
+                                         : values[i];  // nor if not seen even at its largest
 }
 
 }  // namespace detail
 
-/// Needs at least one take with rate, strength and position, and a pitch. Effects that no planned pluck shows (hum, which is there without one) are left out.
+/// Needs at least one take with rate, strength and position, and a pitch. Effects that no planned pluck shows (hum, which is
+/// there without one) are left out.
 [[nodiscard]] inline isolability isolability_of(const planned_plucks& plan, const std::vector<pluck_effect>& effects) {
   const detail::planned_recordings recordings(plan);
   const Eigen::MatrixXd basis = recordings.nuisances();
@@ -192,13 +199,17 @@ template <class Change>
     std::size_t best = 0;
     for (std::size_t k = 0; k < starts.size(); ++k) {
       const Eigen::VectorXd whole = recordings.change(e, starts[k]), left = beyond_nuisances(whole);
-      columns.col(static_cast<Eigen::Index>(k)) = left.norm() > 1e-12 ? Eigen::VectorXd(left / left.norm()) : Eigen::VectorXd::Zero(left.size());
+      columns.col(static_cast<Eigen::Index>(k)) =
+          left.norm() > 1e-12 ? Eigen::VectorXd(left / left.norm()) : Eigen::VectorXd::Zero(left.size());
       if (left.norm() > most) most = left.norm(), best = k, share = most / whole.norm();
     }
     if (!(most > 0)) continue;
     const int size = e.undo ? 0 : e.strength >= 0 ? e.strength : e.shrinks_with;
-    const auto relative = [&](const std::vector<double>& values) { return beyond_nuisances(recordings.change(e, values)).norm() / most; };
-    detectable.push_back(size < 0 ? std::numeric_limits<double>::quiet_NaN() : detail::least_seen(e, size, starts[best], 5 * plan.noise_N / most, relative));
+    const auto relative = [&](const std::vector<double>& values) {
+      return beyond_nuisances(recordings.change(e, values)).norm() / most;
+    };
+    detectable.push_back(size < 0 ? std::numeric_limits<double>::quiet_NaN()
+                                  : detail::least_seen(e, size, starts[best], 5 * plan.noise_N / most, relative));
     surviving.push_back(share);
     out.ids.push_back(e.id());
     out.strength.push_back(size >= 0 ? e.parameters[static_cast<std::size_t>(size)].name : std::string{});
@@ -210,7 +221,8 @@ template <class Change>
   out.cosine = Eigen::MatrixXd::Identity(count, count);
   for (Eigen::Index i = 0; i < count; ++i)
     for (Eigen::Index j = 0; j < i; ++j)
-      out.cosine(i, j) = out.cosine(j, i) = (seen[static_cast<std::size_t>(i)].transpose() * seen[static_cast<std::size_t>(j)]).cwiseAbs().maxCoeff();
+      out.cosine(i, j) = out.cosine(j, i) =
+          (seen[static_cast<std::size_t>(i)].transpose() * seen[static_cast<std::size_t>(j)]).cwiseAbs().maxCoeff();
   return out;
 }
 

@@ -1,17 +1,17 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Which law of friction do reconstructed strokes follow: a curve of the slip speed, the contact's temperature, or bristles that bend
-// before they give way? None of them runs freely: each is driven by the reconstructed motion and asked, through the window that the data
-// went through, for what the contact does.
+// Which law of friction do reconstructed strokes follow: a curve of the slip speed, the contact's temperature, or bristles that
+// bend before they give way? None of them runs freely: each is driven by the reconstructed motion and asked, through the window
+// that the data went through, for what the contact does.
 //
 //     velocity curve   while it sticks the surface moves with the rod; while it slips f = N mu(|v_r|)
 //     thermal          the same while it sticks; while it slips f = N mu(Theta), Theta what the slips so far have left
 //     elasto-plastic   while it sticks v_r = -(s / (s0 (1 + s d))) f; while it slips f = N mu(|v_r|)
 //
-// All are measured on the same samples, against the curve: nats of independent samples, of all takes and of each take as predicted
-// from the others. What shows bristles is the sticking, not the slip: they settle within mu N / s0, micrometres, of which a slip has
-// hundreds. s0 is tried as one number and in proportion to the normal force.
+// All are measured on the same samples, against the curve: nats of independent samples, of all takes and of each take as
+// predicted from the others. What shows bristles is the sticking, not the slip: they settle within mu N / s0, micrometres, of
+// which a slip has hundreds. s0 is tried as one number and in proportion to the normal force.
 //
 #pragma once
 
@@ -33,8 +33,9 @@ struct law_verdict {
 struct law_choice {
   contact_law law = contact_law::velocity_curve;
   std::array<law_verdict, 3> laws{};  ///< in the order of contact_law
-  double margin = 0;                  ///< held-out nats by which the next best predicts worse; below 0: it predicts better, but not by what counts
-  double friction_residual = 0;       ///< of the velocity curve, as a coefficient of friction
+  /// held-out nats by which the next best predicts worse; below 0: it predicts better, but not by what counts
+  double margin = 0;
+  double friction_residual = 0;  ///< of the velocity curve, as a coefficient of friction
 };
 
 namespace detail {
@@ -76,17 +77,21 @@ namespace detail {
 /// Sets the three laws against each other. `model.law` does not matter. Fails where too little slips.
 [[nodiscard]] inline outcome<law_choice> choose_friction_law(const std::vector<contact_take>& takes, contact_model model) {
   for (const auto& t : takes)
-    if (t.rod_speed_m_s == 0 || !(t.normal_force_N > 0)) return failure{t.name + ": law of friction: the rod's speed and the normal force have to be known"};
+    if (t.rod_speed_m_s == 0 || !(t.normal_force_N > 0))
+      return failure{t.name + ": law of friction: the rod's speed and the normal force have to be known"};
   model.law = contact_law::velocity_curve;
   stick_bench sticks(takes, model);
-  if (sticks.records().size() != takes.size() || takes.empty()) return failure{"law of friction: there is no stroke, or one of fewer than 500 known samples"};
+  if (sticks.records().size() != takes.size() || takes.empty())
+    return failure{"law of friction: there is no stroke, or one of fewer than 500 known samples"};
   const slip_bench slips(sticks, takes);
   if (!slips.usable()) return failure{"law of friction: fewer than 100 samples of a stroke slip clear of sticking"};
   law_choice out;
   out.friction_residual = slips.declared().residual();
   out.laws[1] = detail::thermal_verdict(slips, std::max(30.0, 0.01 * sticks.independent()));
   out.laws[2] = detail::bristle_verdict(sticks, takes);
-  const auto score = [](const law_verdict& v) { return v.law == contact_law::velocity_curve ? 0.0 : v.counts() ? v.held_out_gain : std::min(0.0, v.held_out_gain); };
+  const auto score = [](const law_verdict& v) {
+    return v.law == contact_law::velocity_curve ? 0.0 : v.counts() ? v.held_out_gain : std::min(0.0, v.held_out_gain);
+  };
   std::array<double, 3> scores{};
   for (std::size_t i = 0; i < 3; ++i) scores[i] = score(out.laws[i]);
   const auto best = static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());

@@ -17,7 +17,8 @@
 //
 //     G F (h e^(-i a) - 1) e^(gamma x_b),    G F (h e^(i a) - 1) e^(-gamma x_b),    F (h sinh(gamma x_b - i a) - sinh(gamma x_b)) / Z_w.
 //
-// Whole records, in the frequency domain. Stiffness enters as in bow_point_transfer.hpp; a near field is felt by its own load only.
+// Whole records, in the frequency domain. Stiffness enters as in bow_point_transfer.hpp; a near field is felt by its own load
+// only.
 //
 #pragma once
 
@@ -38,15 +39,17 @@ struct load_echo {
 };
 
 /// `loads`: on this side, outwards from the end, positions as travel times from it. `clamping`: of the end.
-[[nodiscard]] inline load_echo echo_of_loads(const std::vector<load_on_side>& loads, double to_bow_s, const bow_point& at, double f_Hz, std::complex<double> force,
-                                             std::complex<double> moved, double clamping = 0) {
+[[nodiscard]] inline load_echo echo_of_loads(const std::vector<load_on_side>& loads, double to_bow_s, const bow_point& at,
+                                             double f_Hz, std::complex<double> force, std::complex<double> moved,
+                                             double clamping = 0) {
   const side_waves waves = waves_at(f_Hz, at.stiffness_s2, propagation_rate(f_Hz, at.stiffness_s2, at.loss), clamping);
   load_echo out{};
   if (waves.ahead != 0) {
     const std::complex<double> turn = std::polar(waves.held, -waves.ahead), onwards = std::exp(waves.gamma * to_bow_s);
     out.own_force = waves.force_factor * force * (turn - 1.0) * onwards;
     out.other_force = waves.force_factor * force * (std::conj(turn) - 1.0) / onwards;
-    out.velocity = force * (waves.sinh(to_bow_s) - std::sinh(waves.gamma * to_bow_s)) / (waves.impedance_ratio * at.impedance_Ns_m);
+    out.velocity =
+        force * (waves.sinh(to_bow_s) - std::sinh(waves.gamma * to_bow_s)) / (waves.impedance_ratio * at.impedance_Ns_m);
   }
   for (const auto& [place, g] : returned_by_loads(loads, waves, to_bow_s, force, moved)) {
     const auto onwards = std::exp(waves.gamma * (to_bow_s - place));
@@ -60,7 +63,8 @@ struct load_echo {
 
 /// Adds the echoes of all loads, and of ends that resist turning, to a motion that was reconstructed without them.
 inline void add_echoes(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N,
-                       const std::array<std::vector<double>, 2>& moved_N, const band& limits, double rate_Hz, bow_motion<double>& motion) {
+                       const std::array<std::vector<double>, 2>& moved_N, const band& limits, double rate_Hz,
+                       bow_motion<double>& motion) {
   const auto on_side = loads_by_side(scene.scatterers, at.delay_s);
   held_record record(force_N[0].size(), 8192);
   std::array<std::vector<std::complex<double>>, 4> change;
@@ -79,7 +83,8 @@ inline void add_echoes(const pluck_scene& scene, const bow_point& at, const std:
       change[2 + side][k] += e.velocity + e.near_field, change[3 - side][k] += e.near_field;
     }
   }
-  const std::array<std::vector<double>*, 4> rows{&motion.force_near_N, &motion.force_far_N, &motion.velocity_near_m_s, &motion.velocity_far_m_s};
+  const std::array<std::vector<double>*, 4> rows{&motion.force_near_N, &motion.force_far_N, &motion.velocity_near_m_s,
+                                                 &motion.velocity_far_m_s};
   for (std::size_t p = 0; p < 4; ++p) {
     const auto more = record.record(std::move(change[p]));
     for (std::size_t i = 0; i < more.size(); ++i) (*rows[p])[i] += more[i];
@@ -89,30 +94,37 @@ inline void add_echoes(const pluck_scene& scene, const bow_point& at, const std:
 }  // namespace detail
 
 /// Z V of the ends whose modes move (newtons); empty for one that does not.
-[[nodiscard]] inline std::array<std::vector<double>, 2> moved_ends(const pluck_scene& scene, const std::array<std::vector<double>, 2>& force_N, const band& limits, double rate_Hz) {
+[[nodiscard]] inline std::array<std::vector<double>, 2> moved_ends(const pluck_scene& scene,
+                                                                   const std::array<std::vector<double>, 2>& force_N,
+                                                                   const band& limits, double rate_Hz) {
   std::array<std::vector<double>, 2> moved;
   for (std::size_t e = 0; e < 2; ++e)
-    if (!scene.ends[e].modes.empty()) moved[e] = motion_of_end(modal_termination{scene.ends[e].modes}, force_N[e], limits, rate_Hz).times_impedance_N;
+    if (!scene.ends[e].modes.empty())
+      moved[e] = motion_of_end(modal_termination{scene.ends[e].modes}, force_N[e], limits, rate_Hz).times_impedance_N;
   return moved;
 }
 
-/// Reconstruction with the loads and the yielding ends of a scene; forces in newtons. Of the ends modes and clamping count, nothing else.
-/// `moved`: moved_ends().
-[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N,
-                                                           const std::array<std::vector<double>, 2>& moved, const band& limits, double rate_Hz) {
+/// Reconstruction with the loads and the yielding ends of a scene; forces in newtons. Of the ends modes and clamping count,
+/// nothing else. `moved`: moved_ends().
+[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at,
+                                                           const std::array<std::vector<double>, 2>& force_N,
+                                                           const std::array<std::vector<double>, 2>& moved, const band& limits,
+                                                           double rate_Hz) {
   bow_motion<double> motion;
   if (moved[0].empty() && moved[1].empty()) {
     motion = reconstructor<double>(at, limits, rate_Hz)(force_N[0], force_N[1]);
   } else {
     auto both = moved;
     for (auto& m : both) m.resize(force_N[0].size(), 0.0);
-    motion = reconstructor<double, with_moving_ends<full_physics>>(at, limits, rate_Hz)(
-        end_signals<double, with_moving_ends<full_physics>>{force_N[0], force_N[1], both[0], both[1]});
+    motion = reconstructor<double, with_moving_ends<full_physics>>(
+        at, limits, rate_Hz)(end_signals<double, with_moving_ends<full_physics>>{force_N[0], force_N[1], both[0], both[1]});
   }
-  if (!scene.scatterers.empty() || scene.ends[0].clamping != 0 || scene.ends[1].clamping != 0) detail::add_echoes(scene, at, force_N, moved, limits, rate_Hz, motion);
+  if (!scene.scatterers.empty() || scene.ends[0].clamping != 0 || scene.ends[1].clamping != 0)
+    detail::add_echoes(scene, at, force_N, moved, limits, rate_Hz, motion);
   return motion;
 }
-[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N, const band& limits,
+[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at,
+                                                           const std::array<std::vector<double>, 2>& force_N, const band& limits,
                                                            double rate_Hz) {
   return reconstruct_loaded(scene, at, force_N, moved_ends(scene, force_N, limits, rate_Hz), limits, rate_Hz);
 }

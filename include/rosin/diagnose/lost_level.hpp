@@ -1,14 +1,15 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// AC-coupled sensors lose the constant part of the force. A law of friction that is fitted to the slips has that constant as one more
-// parameter of each stroke: with friction f + level = N mu(x), what is recorded has to meet the law at the stroke's normal force.
+// AC-coupled sensors lose the constant part of the force. A law of friction that is fitted to the slips has that constant as one
+// more parameter of each stroke: with friction f + level = N mu(x), what is recorded has to meet the law at the stroke's normal
+// force.
 //
-// What can be known of it so depends on the law. A curve of the slip speed, mu(|v_r|), fits with any number added to mu: the levels of the
-// strokes follow against each other, and the one number they share comes from where the friction of rosin is known to lie (loop's
-// middle at 0.65 +- 0.15 of the normal force; reconstruct/dc_level.hpp). Heat is made by the force itself, |f v_r|, and so the thermal
-// law knows where zero is: too low a level heats too little where much is asked. There the number is fitted along with the contact's
-// layer and area (contact_heat.hpp), and the usual range is no more than a prior.
+// What can be known of it so depends on the law. A curve of the slip speed, mu(|v_r|), fits with any number added to mu: the
+// levels of the strokes follow against each other, and the one number they share comes from where the friction of rosin is known
+// to lie (loop's middle at 0.65 +- 0.15 of the normal force; reconstruct/dc_level.hpp). Heat is made by the force itself, |f
+// v_r|, and so the thermal law knows where zero is: too low a level heats too little where much is asked. There the number is
+// fitted along with the contact's layer and area (contact_heat.hpp), and the usual range is no more than a prior.
 //
 #pragma once
 
@@ -37,7 +38,8 @@ inline constexpr double usual_middle = 0.65, usual_doubt = 0.15;
 /// The strokes with levels added, and what laws leave of them: each stroke but the first may still be off by a constant.
 class level_search {
 public:
-  explicit level_search(std::vector<slip_record> records) : records_{std::move(records)}, sign_(records_.size()), shift_(records_.size(), 0.0) {
+  explicit level_search(std::vector<slip_record> records)
+      : records_{std::move(records)}, sign_(records_.size()), shift_(records_.size(), 0.0) {
     for (std::size_t t = 0; t < records_.size(); ++t) {
       const auto& s = records_[t].slips;
       sign_[t] = s.friction.size() > 0 && s.friction[0] * records_[t].force_N[s.sample[0]] < 0 ? -1.0 : 1.0;
@@ -69,14 +71,17 @@ public:
     return with_levels(law_design(records_, x, stride()));
   }
   [[nodiscard]] stick_design heated(const contact_heat_parameters<double>& heat) const {
-    return with_levels(memory_design(records_, [&](std::size_t t) { return heat_along(records_[t], heat); }, stride()));
+    return with_levels(memory_design(
+        records_, [&](std::size_t t) { return heat_along(records_[t], heat); }, stride()));
   }
   /// Sets the strokes against the first as a fit finds them.
   void settle(const design_fit& fit) {
     for (std::size_t t = 1; t < records_.size(); ++t) add(t, -fit.solution.own[t][0]);
   }
   [[nodiscard]] const std::vector<slip_record>& records() const noexcept { return records_; }
-  [[nodiscard]] lost_level of(std::size_t t, double sd) const { return {sign_[t] * shift_[t] * records_[t].normal_N, sd * records_[t].normal_N}; }
+  [[nodiscard]] lost_level of(std::size_t t, double sd) const {
+    return {sign_[t] * shift_[t] * records_[t].normal_N, sd * records_[t].normal_N};
+  }
 
 private:
   /// Of the whole slips, from the first sample to the last: that is where the usual range holds.
@@ -103,15 +108,17 @@ private:
   std::vector<double> sign_, shift_;
 };
 
-/// ln layer, ln area, and what is added to all; minus the log-likelihood with the usual ranges as priors (a layer of 2 um within a factor
-/// of 4.5, an area of 1e-7 m2 a newton within a factor of 2.7).
+/// ln layer, ln area, and what is added to all; minus the log-likelihood with the usual ranges as priors (a layer of 2 um within
+/// a factor of 4.5, an area of 1e-7 m2 a newton within a factor of 2.7).
 struct heat_objective {
   level_search search;
   double independent = 1, floor = 0.003;
   double usual = 0;  ///< what would have to be added to lie in the middle of the usual range
 
   [[nodiscard]] double operator()(const Eigen::Vector3d& at) const {
-    if (!(std::abs(at[0] - std::log(2e-6)) < 4 && std::abs(at[1] - std::log(1e-7)) < 3 && std::abs(at[2] - usual) < 4 * usual_doubt)) return 1e300;
+    if (!(std::abs(at[0] - std::log(2e-6)) < 4 && std::abs(at[1] - std::log(1e-7)) < 3 &&
+          std::abs(at[2] - usual) < 4 * usual_doubt))
+      return 1e300;
     level_search moved = search;
     moved.add_to_all(at[2]);
     const double left = quick_residual(moved.heated({.layer_m = std::exp(at[0]), .area_per_newton_m2 = std::exp(at[1])}), floor);
@@ -121,7 +128,8 @@ struct heat_objective {
 };
 
 /// Pattern search, the steps halved as soon as none helps.
-[[nodiscard]] inline Eigen::Vector3d descend(const heat_objective& objective, Eigen::Vector3d at, Eigen::Vector3d step, int halvings) {
+[[nodiscard]] inline Eigen::Vector3d descend(const heat_objective& objective, Eigen::Vector3d at, Eigen::Vector3d step,
+                                             int halvings) {
   double best = objective(at);
   for (int left = halvings; left > 0;) {
     const Eigen::Vector3d from = at;
@@ -152,7 +160,8 @@ struct heat_objective {
         tried.emplace_back(objective(at), at);
       }
   std::sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  const Eigen::Vector3d step(0.4, 0.2, 0.04), a = descend(objective, tried[0].second, step, 2), b = descend(objective, tried[1].second, step, 2);
+  const Eigen::Vector3d step(0.4, 0.2, 0.04), a = descend(objective, tried[0].second, step, 2),
+                                              b = descend(objective, tried[1].second, step, 2);
   return objective(a) < objective(b) ? a : b;
 }
 
@@ -164,23 +173,27 @@ struct heat_objective {
   for (Eigen::Index i = 0; i < 3; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) {
       const Eigen::Vector3d a = step[i] * Eigen::Vector3d::Unit(i), b = step[j] * Eigen::Vector3d::Unit(j);
-      const double second = i == j ? objective(at + a) + objective(at - a) - 2 * here : (objective(at + a + b) - objective(at + a - b) - objective(at - a + b) + objective(at - a - b)) / 4;
+      const double second =
+          i == j ? objective(at + a) + objective(at - a) - 2 * here
+                 : (objective(at + a + b) - objective(at + a - b) - objective(at - a + b) + objective(at - a - b)) / 4;
       h(i, j) = h(j, i) = second / (step[i] * step[j]);
     }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(h);
   if (solver.info() != Eigen::Success) return usual_doubt;
-  const Eigen::Vector3d curvature = solver.eigenvalues().cwiseMax(1e-3 * solver.eigenvalues()[2]), across = solver.eigenvectors().row(2);
+  const Eigen::Vector3d curvature = solver.eigenvalues().cwiseMax(1e-3 * solver.eigenvalues()[2]),
+                        across = solver.eigenvectors().row(2);
   return std::min(usual_doubt, std::sqrt(across.cwiseAbs2().dot(curvature.cwiseInverse())));
 }
 
 }  // namespace detail
 
-/// Levels of strokes whose mean force is unknown. Precondition: each has 100 slip samples and a normal force. `law_error`: by how much
-/// the level of a thermal law is off, as a coefficient of friction, where it leaves no more than `floor`. A thermal law that leaves much more
-/// is not that of the contact to the point, and what it says of zero is worse than the usual range: then that is used.
-/// One stroke alone bends layer and area to what it needs: 19 strokes of 8 random rigs were off by -0.08 on the average, 0.09 rms. Its error is taken as 2.5 times as
-/// large.
-[[nodiscard]] inline lost_levels find_lost_levels(const std::vector<slip_record>& records, double floor = 0.003, double law_error = 0.04) {
+/// Levels of strokes whose mean force is unknown. Precondition: each has 100 slip samples and a normal force. `law_error`: by how
+/// much the level of a thermal law is off, as a coefficient of friction, where it leaves no more than `floor`. A thermal law that
+/// leaves much more is not that of the contact to the point, and what it says of zero is worse than the usual range: then that is
+/// used. One stroke alone bends layer and area to what it needs: 19 strokes of 8 random rigs were off by -0.08 on the average,
+/// 0.09 rms. Its error is taken as 2.5 times as large.
+[[nodiscard]] inline lost_levels find_lost_levels(const std::vector<slip_record>& records, double floor = 0.003,
+                                                  double law_error = 0.04) {
   detail::level_search search(records);
   for (int pass = 0; pass < 2; ++pass) search.settle(fit_design(search.curve(), floor));
   search.centre();
@@ -194,9 +207,11 @@ struct heat_objective {
       at = detail::descend(objective, at, round == 0 ? Eigen::Vector3d(0.2, 0.1, 0.02) : Eigen::Vector3d(0.1, 0.1, 0.02), 4);
       objective.search.add_to_all(at[2]);
       objective.usual -= at[2], at[2] = 0;
-      objective.search.settle(fit_design(objective.search.heated({.layer_m = std::exp(at[0]), .area_per_newton_m2 = std::exp(at[1])}), floor));
+      objective.search.settle(
+          fit_design(objective.search.heated({.layer_m = std::exp(at[0]), .area_per_newton_m2 = std::exp(at[1])}), floor));
     }
-    const auto fit = fit_design(objective.search.heated({.layer_m = std::exp(at[0]), .area_per_newton_m2 = std::exp(at[1])}), floor);
+    const auto fit =
+        fit_design(objective.search.heated({.layer_m = std::exp(at[0]), .area_per_newton_m2 = std::exp(at[1])}), floor);
     out.gain = objective.independent * std::log(curve.solution.scale / fit.solution.scale);
     out.left = fit.solution.scale;
     const double alone = records.size() > 1 ? 1 : 2.5;

@@ -54,7 +54,8 @@ inline unexplained_part left_by(const line_problem<scene_plucks>& problem, const
 }
 
 /// What the channels make of forces on the ends: sensors, crosstalk, gains.
-[[nodiscard]] inline Eigen::Vector2cd recorded_of(const pluck_scene& scene, const std::array<double, 2>& gain, std::complex<double> s, std::complex<double> near, std::complex<double> far) {
+[[nodiscard]] inline Eigen::Vector2cd recorded_of(const pluck_scene& scene, const std::array<double, 2>& gain,
+                                                  std::complex<double> s, std::complex<double> near, std::complex<double> far) {
   const std::complex<double> a = near * scene.sensors[0](s), b = far * scene.sensors[1](s);
   return {gain[0] * (a + scene.crosstalk * b), gain[1] * (b + scene.crosstalk * a)};
 }
@@ -64,15 +65,21 @@ inline unexplained_part left_by(const line_problem<scene_plucks>& problem, const
 class place_search {
 public:
   /// gain: recorded / true of each channel; noise: white, of each channel.
-  place_search(const pluck_scene& scene, std::array<double, 2> gain, const band& limits, const unexplained_part& left, std::array<double, 2> noise)
-      : scene_{scene}, gain_{gain}, sure_{1 / noise[0], 1 / noise[1]}, line_{line_over(static_cast<std::size_t>(left.force_N[0].size()), left.rate_Hz, limits.pass_Hz)} {
-    const auto first = static_cast<std::size_t>(0.3 * scene.string.fundamental_Hz * static_cast<double>(line_.samples) / line_.rate_Hz), bins = line_.bins();
+  place_search(const pluck_scene& scene, std::array<double, 2> gain, const band& limits, const unexplained_part& left,
+               std::array<double, 2> noise)
+      : scene_{scene}, gain_{gain}, sure_{1 / noise[0], 1 / noise[1]}, line_{line_over(
+                                                                           static_cast<std::size_t>(left.force_N[0].size()),
+                                                                           left.rate_Hz, limits.pass_Hz)} {
+    const auto first = static_cast<std::size_t>(0.3 * scene.string.fundamental_Hz * static_cast<double>(line_.samples) /
+                                                line_.rate_Hz),
+               bins = line_.bins();
     const std::size_t stride = std::max<std::size_t>(1, (bins - std::min(bins, first)) / most_bins);
     for (std::size_t k = first; k < bins; k += stride) bins_.push_back(k), at_.emplace_back(scene, line_.at(k));
     residual_ = spectra(left.force_N);
     for (const auto& n : left.nuisances) nuisances_.push_back(spectra(n));
     power_ = residual_.squaredNorm();
-    noise_power_ = static_cast<double>(bins_.size()) * line_.weighted_samples() / (line_.rate_Hz * line_.rate_Hz);  // of one channel
+    noise_power_ =
+        static_cast<double>(bins_.size()) * line_.weighted_samples() / (line_.rate_Hz * line_.rate_Hz);  // of one channel
     alike_ = std::max(1.0, faded / static_cast<double>(stride));
   }
 
@@ -81,7 +88,8 @@ public:
     acting_place best;
     best.left = 2;
     for (const acting on : {acting::near_end, acting::far_end, acting::near_channel, acting::far_channel})
-      if (const double l = across(on, 0) / power_; l < best.left) best = {on, on == acting::far_end || on == acting::far_channel ? 1.0 : 0.0, 0, l};
+      if (const double l = across(on, 0) / power_; l < best.left)
+        best = {on, on == acting::far_end || on == acting::far_channel ? 1.0 : 0.0, 0, l};
     constexpr int grid = 64;
     std::array<double, grid> cost{};
     for (int i = 1; i < grid; ++i) cost[static_cast<std::size_t>(i)] = across(acting::on_string, static_cast<double>(i) / grid);
@@ -114,7 +122,8 @@ private:
     spectrum_pair out(static_cast<Eigen::Index>(bins_.size()), 2);
     for (std::size_t c = 0; c < 2; ++c) {
       const auto all = damped_spectrum(line_, {x[c].data(), static_cast<std::size_t>(x[c].size())});
-      for (std::size_t k = 0; k < bins_.size(); ++k) out(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c)) = sure_[c] * all[bins_[k]];
+      for (std::size_t k = 0; k < bins_.size(); ++k)
+        out(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c)) = sure_[c] * all[bins_[k]];
     }
     return out;
   }
@@ -126,12 +135,15 @@ private:
     const std::complex<double> s = line_.at(bins_[i]);
     std::array<std::complex<double>, 2> n{at_[i].own_end(), at_[i].other_end()};
     if (on == acting::far_end) std::swap(n[0], n[1]);
-    if (on == acting::on_string) n = scene_.plain_string() ? std::array{at_[i].end_force(0, x), at_[i].end_force(1, x)} : close_loop(scene_, x, s).times_determinant;
+    if (on == acting::on_string)
+      n = scene_.plain_string() ? std::array{at_[i].end_force(0, x), at_[i].end_force(1, x)}
+                                : close_loop(scene_, x, s).times_determinant;
     const Eigen::Vector2cd seen = detail::recorded_of(scene_, gain_, s, n[0], n[1]);
     return {seen[0] * sure_[0], seen[1] * sure_[1]};
   }
 
-  /// What lies across the shares of a place: of the mismatch, and of each nuisance (a column each); real parts, then imaginary ones.
+  /// What lies across the shares of a place: of the mismatch, and of each nuisance (a column each); real parts, then imaginary
+  /// ones.
   [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::MatrixXd> parts_across(acting on, double x) const {
     const auto rows = static_cast<Eigen::Index>(bins_.size()), columns = static_cast<Eigen::Index>(nuisances_.size());
     std::pair<Eigen::VectorXd, Eigen::MatrixXd> out{Eigen::VectorXd(2 * rows), Eigen::MatrixXd(2 * rows, columns)};
@@ -182,13 +194,18 @@ private:
   std::vector<spectrum_pair> nuisances_;
 };
 
-/// Where what a fit leaves of one of its takes acts, over the first periods; nothing where that is mostly noise or no single place explains
-/// nearly all of it.
-[[nodiscard]] inline std::optional<acting_place> place_of_residual(const scene_data& data, const scene_fit& fit, std::size_t take) {
+/// Where what a fit leaves of one of its takes acts, over the first periods; nothing where that is mostly noise or no single
+/// place explains nearly all of it.
+[[nodiscard]] inline std::optional<acting_place> place_of_residual(const scene_data& data, const scene_fit& fit,
+                                                                   std::size_t take) {
   constexpr double most_periods = 24, least_periods = 2;
-  const auto problem = data.problem(fit.effects, fit.value, {1000, std::min(most_periods, fit.horizon_periods), true, data.layout.has_ends() ? freedom::no_corrections : freedom::all}, {1, 1});  // an end that is free would take up what acts there
+  const auto problem = data.problem(
+      fit.effects, fit.value,
+      {1000, std::min(most_periods, fit.horizon_periods), true, data.layout.has_ends() ? freedom::no_corrections : freedom::all},
+      {1, 1});  // an end that is free would take up what acts there
   const pluck_scene scene = problem.model().scene(fit.value, static_cast<int>(take));
-  if (static_cast<double>(problem.part(take, 1).count()) < least_periods * problem.rate_Hz(take) / scene.string.fundamental_Hz) return std::nullopt;
+  if (static_cast<double>(problem.part(take, 1).count()) < least_periods * problem.rate_Hz(take) / scene.string.fundamental_Hz)
+    return std::nullopt;
   const std::array<double, 2> gain{pluck_layout::gain(fit.value, 0), pluck_layout::gain(fit.value, 1)};
   const place_search search(scene, gain, problem.limits(), detail::left_by(problem, fit.value, take), fit.quality.noise);
   if (!search.is_mismatch()) return std::nullopt;

@@ -3,9 +3,10 @@
 //
 // Effects of plucks that are not linear, as what has to be taken out of a recording to make it so.
 //
-// A sensor with output = f + a f^2 is inverted, f = (sqrt(1 + 4 a y) - 1) / (2 a), where it bends: behind its own ringing or before it. A
-// string that is stretched by its own motion (stretching_pluck.hpp) is simulated twice, with and without, and the difference taken out, as the sensors
-// record it. A sensor that also feels the tension itself records  f + s (1 / 2L) integral y'^2 dx:  sums and differences of partials, which players know as phantoms.
+// A sensor with output = f + a f^2 is inverted, f = (sqrt(1 + 4 a y) - 1) / (2 a), where it bends: behind its own ringing or
+// before it. A string that is stretched by its own motion (stretching_pluck.hpp) is simulated twice, with and without, and the
+// difference taken out, as the sensors record it. A sensor that also feels the tension itself records  f + s (1 / 2L) integral
+// y'^2 dx:  sums and differences of partials, which players know as phantoms.
 //
 #pragma once
 
@@ -20,8 +21,9 @@ namespace detail {
 /// f, where y = f + a f^2.
 [[nodiscard]] inline double straightened(double y, double a) { return (std::sqrt(std::max(0.0, 1 + 4 * a * y)) - 1) / (2 * a); }
 
-/// What a channel felt before its high-pass. The lost constant is such that f, where felt = f + a f^2, has no mean in the later half: a string
-/// that rings swings about zero. (A bowed one does not: there the curvature is undone about a level that is off by the mean force.)
+/// What a channel felt before its high-pass. The lost constant is such that f, where felt = f + a f^2, has no mean in the later
+/// half: a string that rings swings about zero. (A bowed one does not: there the curvature is undone about a level that is off by
+/// the mean force.)
 inline void bring_back_level(std::vector<double>& felt, double a, double corner_Hz, double rate_Hz) {
   restore_ac_coupled(std::span(felt), corner_Hz, rate_Hz);
   const auto later = felt.begin() + static_cast<std::ptrdiff_t>(felt.size() / 2);
@@ -45,16 +47,20 @@ namespace detail {
   pluck_scene behind;
   behind.crosstalk = scene.crosstalk;
   for (std::size_t c = 0; c < 2; ++c) behind.sensors[c].corner_Hz = scene.sensors[c].corner_Hz;
-  if (where == bending::before_ringing) behind.sensors[channel].resonance_Hz = scene.sensors[channel].resonance_Hz, behind.sensors[channel].q = scene.sensors[channel].q;
+  if (where == bending::before_ringing)
+    behind.sensors[channel].resonance_Hz = scene.sensors[channel].resonance_Hz,
+    behind.sensors[channel].q = scene.sensors[channel].q;
   return behind;
 }
 
 /// A channel as it was there, in newtons; a: of the bend that is to be undone.
-[[nodiscard]] inline std::vector<double> at_the_bend(const pluck_take& take, const pluck_scene& behind, std::size_t channel, const std::array<double, 2>& gain, double a) {
+[[nodiscard]] inline std::vector<double> at_the_bend(const pluck_take& take, const pluck_scene& behind, std::size_t channel,
+                                                     const std::array<double, 2>& gain, double a) {
   const std::vector<double>&own = take.force_N[channel], &other = take.force_N[1 - channel];
   const double leaks = behind.crosstalk;
   std::vector<double> felt(own.size());
-  for (std::size_t i = 0; i < felt.size(); ++i) felt[i] = (own[i] / gain[channel] - leaks * other[i] / gain[1 - channel]) / (1 - leaks * leaks);
+  for (std::size_t i = 0; i < felt.size(); ++i)
+    felt[i] = (own[i] / gain[channel] - leaks * other[i] / gain[1 - channel]) / (1 - leaks * leaks);
   const sensor_response& sensor = behind.sensors[channel];
   if (sensor.corner_Hz > 0) bring_back_level(felt, a, sensor.corner_Hz, take.rate_Hz);
   if (sensor.resonance_Hz > 0) unring(felt, sensor, take.rate_Hz);
@@ -65,9 +71,15 @@ namespace detail {
 
 /// output = f + a f^2 in one channel. What comes behind that a f^2 passes, too.
 inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel, bending where = bending::behind_ringing) {
-  pluck_effect e{"sensor-nonlinearity", channel, false, {{"quadratic_per_N", -0.6, 0.6, 1e-4, false, -1, true}}, {{0}}, -3, {}};
-  if (where == bending::before_ringing) e.variant = "before it rings", e.beside = channel == 0 ? "sensor-resonance@near" : "sensor-resonance@far";
-  e.undo = [channel, where](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout&, const Eigen::VectorXd& v, double a) {
+  pluck_effect e{.name = "sensor-nonlinearity",
+                 .place = channel,
+                 .parameters = {by_score_steps("quadratic_per_N", -0.6, 0.6, 1e-4)},
+                 .starts = {{0}},
+                 .strength = -3};
+  if (where == bending::before_ringing)
+    e.variant = "before it rings", e.beside = channel == 0 ? "sensor-resonance@near" : "sensor-resonance@far";
+  e.undo = [channel, where](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout&,
+                            const Eigen::VectorXd& v, double a) {
     const auto own = static_cast<std::size_t>(channel);
     const std::array<double, 2> gain{pluck_layout::gain(v, 0), pluck_layout::gain(v, 1)};
     const pluck_scene behind = detail::behind_the_bend(scene, own, where);
@@ -83,36 +95,46 @@ inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel,
   return e;
 }
 
-/// Large motion stretches the string. Needs the tension in newtons. The string that rings in the mean is part of the scene; what is
-/// taken out is by how much the stretched one differs from it.
+/// Large motion stretches the string. Needs the tension in newtons. The string that rings in the mean is part of the scene; what
+/// is taken out is by how much the stretched one differs from it.
 inline pluck_effect tension_modulation_effect(const string_facts& f, const band& limits) {
-  pluck_effect e{"tension-modulation", -1, false, {{"axial_stiffness_N", 0, 3e6, 20}}, {{0}}, -3, {}};
+  pluck_effect e{
+      .name = "tension-modulation", .parameters = {{"axial_stiffness_N", 0, 3e6, 20}}, .starts = {{0}}, .strength = -3};
   constexpr double most_periods = 10;
   e.horizon_periods = most_periods;
   const double tension = f.impedance_Ns_m * 2 * f.length_m * f.fundamental_Hz, horizon_s = most_periods / f.fundamental_Hz;
   const auto raised = [=](const pluck_layout& layout, const Eigen::VectorXd& v, std::size_t t, double axial_N) {
-    return mean_stretch(layout.string(v), v[layout.position(t)], std::exp(v[layout.at(t, pluck_layout::strength)]) / tension, axial_N / (4 * tension), 0.6 * most_periods);
+    return mean_stretch(layout.string(v), v[layout.position(t)], std::exp(v[layout.at(t, pluck_layout::strength)]) / tension,
+                        axial_N / (4 * tension), 0.6 * most_periods);
   };
   e.retune = [=](pluck_scene& s, const pluck_layout& layout, const Eigen::VectorXd& v, std::size_t t, double axial_N) {
     s.string = tightened(s.string, raised(layout, v, t, axial_N));
   };
-  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout, const Eigen::VectorXd& v, double axial_N) {
+  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout, const Eigen::VectorXd& v,
+               double axial_N) {
     for (std::size_t t = 0; t < takes.size(); ++t) {
-      const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate, newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
-      const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(released)));  // on the record's own samples: nothing is interpolated
+      const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate,
+                   newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
+      // on the record's own samples: nothing is interpolated
+      const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(released)));
       if (first >= takes[t].force_N[0].size()) continue;
-      const std::size_t count = std::min(takes[t].force_N[0].size() - first, static_cast<std::size_t>(horizon_s * rate * 1.1) + 8);
+      const std::size_t count =
+          std::min(takes[t].force_N[0].size() - first, static_cast<std::size_t>(horizon_s * rate * 1.1) + 8);
       const band all{limits.stop_Hz, limits.stop_Hz};
       const ringing_string slack = layout.string(v), mean = tightened(slack, raised(layout, v, t, axial_N));
       const double wait_s = std::min(1.0, static_cast<double>(first) - released) / rate;
-      const auto steps = static_cast<std::size_t>(std::ceil(120e3 / rate));  // half of them or twice as many: the same within 0.002 of what is taken out
+      const auto steps = static_cast<std::size_t>(
+          std::ceil(120e3 / rate));  // half of them or twice as many: the same within 0.002 of what is taken out
       const auto run = [&](const ringing_string& string, double stretch) {
         const nearest_pinned pinned(scene, string);
-        return stretching_pluck(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension, all, 400, {scene.detuning, scene.coupling}).run(stretch, wait_s, 1 / rate, stretch > 0 ? steps : 1, count);
+        return stretching_pluck(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension, all, 400,
+                                {scene.detuning, scene.coupling})
+            .run(stretch, wait_s, 1 / rate, stretch > 0 ? steps : 1, count);
       };
       auto excess = run(slack, axial_N / (4 * tension));
       const auto plain = run(mean, 0);
-      const double early_s = std::max({0.0, -scene.sensors[0].delay_s, -scene.sensors[1].delay_s});  // a channel may have it before the string
+      // a channel may have it before the string
+      const double early_s = std::max({0.0, -scene.sensors[0].delay_s, -scene.sensors[1].delay_s});
       const std::size_t lead = std::min(first, static_cast<std::size_t>(std::ceil(early_s * rate)));
       for (std::size_t c = 0; c < 2; ++c) {
         for (std::size_t i = 0; i < count; ++i) excess[c][i] -= plain[c][i];
@@ -121,25 +143,34 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
       pass_wire(excess, scene, rate);
       pass_sensors(excess, scene, rate);
       for (std::size_t c = 0; c < 2; ++c)
-        for (std::size_t i = 0; i < excess[c].size(); ++i) takes[t].force_N[c][first - lead + i] -= newtons * pluck_layout::gain(v, c) * excess[c][i];
+        for (std::size_t i = 0; i < excess[c].size(); ++i)
+          takes[t].force_N[c][first - lead + i] -= newtons * pluck_layout::gain(v, c) * excess[c][i];
     }
   };
   return e;
 }
 
-/// A channel that feels the tension, too: what it reads per unit of strain. The tension is the same all along the string: the partials
-/// are below its longitudinal modes.
+/// A channel that feels the tension, too: what it reads per unit of strain. The tension is the same all along the string: the
+/// partials are below its longitudinal modes.
 inline pluck_effect phantom_partials_effect(const string_facts& f, const band& limits, int channel) {
   const double tension = f.impedance_Ns_m * 2 * f.length_m * f.fundamental_Hz;
-  pluck_effect e{"phantom-partials", channel, false, {{"sensed_axial_stiffness_N", -3e6, 3e6, 1e-3 * tension, false, -1, true}}, {{0}}, -3, {}};
-  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout, const Eigen::VectorXd& v, double sensed_N) {
+  pluck_effect e{.name = "phantom-partials",
+                 .place = channel,
+                 .parameters = {by_score_steps("sensed_axial_stiffness_N", -3e6, 3e6, 1e-3 * tension)},
+                 .starts = {{0}},
+                 .strength = -3};
+  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout, const Eigen::VectorXd& v,
+               double sensed_N) {
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const std::size_t size = takes[t].force_N[0].size();
-      const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate, newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
+      const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate,
+                   newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
       const auto first = std::min(size, static_cast<std::size_t>(std::max(0.0, std::ceil(released))));
       const nearest_pinned pinned(scene, layout.string(v));
-      const stretching_pluck string(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension, {limits.stop_Hz, limits.stop_Hz}, 120, {scene.detuning, scene.coupling});
-      const std::vector<double> strain = string.unstretched_strain(std::min(1.0, static_cast<double>(first) - released) / rate, 1 / rate, size - first);
+      const stretching_pluck string(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension,
+                                    {limits.stop_Hz, limits.stop_Hz}, 120, {scene.detuning, scene.coupling});
+      const std::vector<double> strain =
+          string.unstretched_strain(std::min(1.0, static_cast<double>(first) - released) / rate, 1 / rate, size - first);
       std::array<std::vector<double>, 2> felt{std::vector<double>(size), std::vector<double>(size)};
       auto& own = felt[static_cast<std::size_t>(channel)];
       std::fill_n(own.begin(), first, sensed_N * string.held_strain());

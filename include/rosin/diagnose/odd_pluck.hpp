@@ -1,11 +1,11 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Where plucks leave something unexplained: is it one of them that contradicts the others? Another string, another tuning, an obstacle
-// that only the strongest meets, samples that a recorder lost, a place where nobody meant to pluck. Each is left out in turn; if the declared model fits the others far
-// better without one, these are diagnosed by themselves, and if nothing is left unexplained there, that one is the odd one. It is
-// predicted like a take that was held out, and searched for an instant from which on it runs ahead by a whole number of samples, and for
-// another place from which the others' model predicts it.
+// Where plucks leave something unexplained: is it one of them that contradicts the others? Another string, another tuning, an
+// obstacle that only the strongest meets, samples that a recorder lost, a place where nobody meant to pluck. Each is left out in
+// turn; if the declared model fits the others far better without one, these are diagnosed by themselves, and if nothing is left
+// unexplained there, that one is the odd one. It is predicted like a take that was held out, and searched for an instant from
+// which on it runs ahead by a whole number of samples, and for another place from which the others' model predicts it.
 //
 #pragma once
 
@@ -34,16 +34,16 @@ struct take_and_model {
 struct odd_pluck {
   pluck_take take;
   pluck_diagnosis others;
-  std::vector<pluck_take> also{};    ///< weaker ones that contradict the others as well
-  take_and_model ringing{};          ///< by release and strength of its first periods
-  double own_fundamental_Hz = 0;     ///< of this pluck fitted by itself; 0: it cannot be
+  std::vector<pluck_take> also{};  ///< weaker ones that contradict the others as well
+  take_and_model ringing{};        ///< by release and strength of its first periods
+  double own_fundamental_Hz = 0;   ///< of this pluck fitted by itself; 0: it cannot be
   bool strongest = false;
-  std::array<double, 2> time_s{};    ///< from when on it is off: a window of half a period
-  double before = 0, floor = 0;      ///< rms residual / rms recorded, as the others predict it; the noise's share
+  std::array<double, 2> time_s{};      ///< from when on it is off: a window of half a period
+  double before = 0, floor = 0;        ///< rms residual / rms recorded, as the others predict it; the noise's share
   std::optional<lost_samples> lost{};  ///< if that is what is odd
   std::optional<moved_pluck> moved{};  ///< or this
-  take_and_model elsewhere{};        ///< `ringing` from there
-  double after = 0;                  ///< with the loss, or from there
+  take_and_model elsewhere{};          ///< `ringing` from there
+  double after = 0;                    ///< with the loss, or from there
 };
 
 namespace detail {
@@ -75,7 +75,8 @@ inline loss_search find_loss(const take_and_model& t, std::size_t most_lag, std:
   loss_search best;
   const auto error = [&](std::size_t i, std::size_t lag) {
     double sum = 0;
-    for (std::size_t c = 0; c < 2; ++c) sum += std::pow(t.recorded[c][static_cast<Eigen::Index>(i)] - t.model[c][static_cast<Eigen::Index>(i + lag)], 2);
+    for (std::size_t c = 0; c < 2; ++c)
+      sum += std::pow(t.recorded[c][static_cast<Eigen::Index>(i)] - t.model[c][static_cast<Eigen::Index>(i + lag)], 2);
     return sum;
   };
   std::vector<double> before(n + 1, 0.0), behind(n + 1, 0.0);
@@ -85,7 +86,8 @@ inline loss_search find_loss(const take_and_model& t, std::size_t most_lag, std:
     behind[end] = 0;
     for (std::size_t i = end; i-- > 0;) behind[i] = behind[i + 1] + error(i, lag);
     for (std::size_t from = 0; from + 2 * gap < end; ++from)
-      if (const double mean = (before[from] + behind[from + gap]) / static_cast<double>(2 * (end - gap)); mean < best.mean_square) best = {from, lag, mean};
+      if (const double mean = (before[from] + behind[from + gap]) / static_cast<double>(2 * (end - gap)); mean < best.mean_square)
+        best = {from, lag, mean};
   }
   return best;
 }
@@ -98,14 +100,16 @@ inline void search_loss(odd_pluck& odd) {
   const loss_search found = find_loss(t, most_lag, gap);
   double recorded = 0, off = 0, samples = 0;
   for (std::size_t c = 0; c < 2; ++c)
-    recorded += t.recorded[c].squaredNorm(), off += (t.recorded[c] - t.model[c]).squaredNorm(), samples += static_cast<double>(t.recorded[c].size());
+    recorded += t.recorded[c].squaredNorm(), off += (t.recorded[c] - t.model[c]).squaredNorm(),
+        samples += static_cast<double>(t.recorded[c].size());
   if (!(found.mean_square < 0.02 * off / samples)) return;
-  odd.lost = lost_samples{found.lag, t.begin_s + (static_cast<double>(found.from) + 0.5 * gap) / t.rate_Hz, 0.25 * gap / t.rate_Hz};
+  odd.lost =
+      lost_samples{found.lag, t.begin_s + (static_cast<double>(found.from) + 0.5 * gap) / t.rate_Hz, 0.25 * gap / t.rate_Hz};
   odd.after = std::sqrt(found.mean_square * samples / recorded);
 }
 
-/// Another place from which the model of the others predicts the pluck. What a wrong place leaves of the first periods falls steadily
-/// towards the right one; there, of the whole take, it is a parabola.
+/// Another place from which the model of the others predicts the pluck. What a wrong place leaves of the first periods falls
+/// steadily towards the right one; there, of the whole take, it is a parabola.
 inline void search_place(odd_pluck& odd) {
   constexpr double ends = 0.02, step = 0.06, near = 1e-3, few_periods = 3;
   const auto from = [&](double position) {
@@ -117,7 +121,9 @@ inline void search_place(odd_pluck& odd) {
     const auto seen = see(odd.others.data, odd.others.best, from(x), few_periods);
     return seen ? seen->fit.quality.residual_ratio[0] : 1.0;
   };
-  const auto whole = [&](double x) { return predicted(odd.others.data, odd.others.best, from(x), rms_of(odd.others.best.quality.noise)); };
+  const auto whole = [&](double x) {
+    return predicted(odd.others.data, odd.others.best, from(x), rms_of(odd.others.best.quality.noise));
+  };
   double best = ends, least = early(best), bend = 0;
   const auto attempt = [&](double x) {
     if (const double left = early(x); left < least) least = left, best = x;
@@ -125,7 +131,8 @@ inline void search_place(odd_pluck& odd) {
   for (double x = ends + step; x <= 1 - ends; x += step) attempt(x);
   for (double reach = step / 2; reach > near; reach /= 2) attempt(best - reach), attempt(best + reach);
   for (const double h : {near, near / 10}) {
-    const double below = std::pow(whole(best - h)[0], 2), here = std::pow(whole(best)[0], 2), above = std::pow(whole(best + h)[0], 2);
+    const double below = std::pow(whole(best - h)[0], 2), here = std::pow(whole(best)[0], 2),
+                 above = std::pow(whole(best + h)[0], 2);
     bend = (below + above - 2 * here) / (h * h);
     if (!(bend > 0)) return;
     best -= std::clamp((above - below) / (2 * h * bend), -2 * h, 2 * h);
@@ -135,7 +142,8 @@ inline void search_place(odd_pluck& odd) {
   // A place counts from the nearest one that was declared and fitted: as much as that is off, so is this.
   const auto& data = odd.others.data;
   const Eigen::Index first = data.layout.position(0);
-  odd.moved = moved_pluck{best + odd.others.best.value[first] - data.takes[0].position, std::hypot(left / std::sqrt(0.5 * samples * bend), odd.others.best.sd[first])};
+  odd.moved = moved_pluck{best + odd.others.best.value[first] - data.takes[0].position,
+                          std::hypot(left / std::sqrt(0.5 * samples * bend), odd.others.best.sd[first])};
   odd.after = left;
   odd.elsewhere = compare_late(odd.others, from(best));
 }
@@ -157,7 +165,8 @@ inline std::array<double, 2> first_off(const take_and_model& t, double fundament
 }
 
 /// Against plucks that are explained by themselves; nothing if they foretell it.
-inline std::optional<odd_pluck> against(pluck_diagnosis others, const pluck_take& take, const pluck_guess& guess, const pluck_options& options) {
+inline std::optional<odd_pluck> against(pluck_diagnosis others, const pluck_take& take, const pluck_guess& guess,
+                                        const pluck_options& options) {
   odd_pluck odd{.take = take, .others = std::move(others), .strongest = true};
   const auto seen = predicted(odd.others.data, odd.others.best, take, rms_of(odd.others.best.quality.noise));
   odd.before = seen[0], odd.floor = seen[1];
@@ -177,8 +186,9 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
 }  // namespace detail
 
 /// The odd one of at least three plucks (fitted and held out), if there is one.
-[[nodiscard]] inline std::optional<odd_pluck> find_odd_pluck(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
-                                                             const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for) {
+[[nodiscard]] inline std::optional<odd_pluck> find_odd_pluck(
+    const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
+    const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for) {
   constexpr double far_better = 0.3;
   std::vector<pluck_take> all = takes;
   all.insert(all.end(), held.begin(), held.end());
@@ -192,7 +202,8 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
   for (std::size_t i = 0; i < all.size(); ++i)
     if (const double left = detail::worst_of(without(all, i), guess, options); left < least) least = left, which = i;
   if (!(least < far_better * detail::worst_of(all, guess, options))) return std::nullopt;
-  std::vector<pluck_take> fitted = without(takes, which), kept = which < takes.size() ? held : without(held, which - takes.size());
+  std::vector<pluck_take> fitted = without(takes, which),
+                          kept = which < takes.size() ? held : without(held, which - takes.size());
   if (kept.empty() && fitted.size() > 1) kept.push_back(std::move(fitted.back())), fitted.pop_back();
   if (fitted.empty()) std::swap(fitted, kept);
   auto others = diagnose_plucks(fitted, kept, guess, options, catalogue_for);

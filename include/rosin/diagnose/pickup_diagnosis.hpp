@@ -5,9 +5,10 @@
 //
 //     listen -> structure (glide, pairs) -> table of partials -> law (stiffness, losses, loads, supports) -> strays (hum, other strings)
 //
-// The likelihood falls into these parts, since frequency and decay of every partial are free in the first and everything else is free in the
-// second; so each part is searched by itself. Takes set aside are then predicted sample by sample (pickup_prediction.hpp), of which only
-// pitch and the partials' amplitudes and phases are free. The same with each partial's own measured pole says how far any law could go.
+// The likelihood falls into these parts, since frequency and decay of every partial are free in the first and everything else is
+// free in the second; so each part is searched by itself. Takes set aside are then predicted sample by sample
+// (pickup_prediction.hpp), of which only pitch and the partials' amplitudes and phases are free. The same with each partial's own
+// measured pole says how far any law could go.
 //
 #pragma once
 
@@ -20,7 +21,8 @@ namespace detail {
 
 class pickup_examination {
 public:
-  pickup_examination(const std::vector<pickup_signal>& fitted, const std::vector<pickup_signal>& held, const pickup_question& ask) : fitted_{fitted}, held_{held}, ask_{ask} {}
+  pickup_examination(const std::vector<pickup_signal>& fitted, const std::vector<pickup_signal>& held, const pickup_question& ask)
+      : fitted_{fitted}, held_{held}, ask_{ask} {}
 
   [[nodiscard]] outcome<pickup_diagnosis> run() {
     hear(fitted_, ringings_, &d_.heard);
@@ -45,10 +47,16 @@ private:
       else out.push_back(*std::move(r)), which->push_back(i);
     }
   }
-  [[nodiscard]] static bool power_known(const pickup_signal& s) { return s.kind == pickup_kind::force || (s.kind != pickup_kind::sound && s.position > 0); }
+  [[nodiscard]] static bool power_known(const pickup_signal& s) {
+    return s.kind == pickup_kind::force || (s.kind != pickup_kind::sound && s.position > 0);
+  }
 
   void find_structure() {
-    structure_question q{ask_.asks_for("tension-modulation"), ask_.asks_for("second-polarization"), ask_.is_declared("tension-modulation"), ask_.is_declared("second-polarization"), {}};
+    structure_question q{ask_.asks_for("tension-modulation"),
+                         ask_.asks_for("second-polarization"),
+                         ask_.is_declared("tension-modulation"),
+                         ask_.is_declared("second-polarization"),
+                         {}};
     for (const std::size_t i : d_.heard) q.power_known.push_back(power_known(fitted_[i]));
     d_.structures = structures_of(ringings_, q);
     d_.structure = d_.structures.front();
@@ -59,11 +67,13 @@ private:
         const double power = ringings_[i].strength();
         k.add(g.relative / power, std::hypot(g.sd, 0.01 * g.relative) / power);
       }
-    d_.glide_per_power = k.mean(), d_.glide_per_power_sd = std::hypot(k.sd(), 0.05 * k.mean());  // so far off were simulated strings
+    d_.glide_per_power = k.mean(),
+    d_.glide_per_power_sd = std::hypot(k.sd(), 0.05 * k.mean());  // so far off were simulated strings
   }
   /// The glide that a ringing has by its strength.
   [[nodiscard]] glide_found glide_of(const pickup_ringing& r) const {
-    const auto one = std::find_if(d_.structure.glide.begin(), d_.structure.glide.end(), [](const auto& g) { return g.relative > 0; });
+    const auto one =
+        std::find_if(d_.structure.glide.begin(), d_.structure.glide.end(), [](const auto& g) { return g.relative > 0; });
     glide_shape shape = one->shape.number.size() > 1 || one->shape.number[0] > 0 ? shape_by_power(r) : one->shape;
     return {std::move(shape), d_.glide_per_power * r.strength(), 0, 0, 1};
   }
@@ -77,7 +87,8 @@ private:
   }
 
   void find_law() {
-    std::vector<law_effect> catalogue = law_effects(d_.table.lines.front().frequency_Hz / d_.table.lines.front().number, d_.table.lines.back().number);
+    std::vector<law_effect> catalogue =
+        law_effects(d_.table.lines.front().frequency_Hz / d_.table.lines.front().number, d_.table.lines.back().number);
     std::vector<law_parameter> parameters = ideal_string(ask_.fundamental_Hz);
     pickup_law start{ask_.fundamental_Hz, 0, 1e-3};
     fitted_law declared = fit_law(d_.table, parameters, start);
@@ -94,8 +105,10 @@ private:
   void find_stray_lines() {
     if (!ask_.asks_for("mains-hum") && !ask_.asks_for("sympathetic-string")) return;
     std::vector<stray_lines> each;
-    for (std::size_t i = 0; i < ringings_.size(); ++i) each.push_back(strays_of(fitted_[d_.heard[i]], ringings_[i], glide_in(d_.structure.glide, i)));
-    for (std::size_t i = 0; i < held_ringings_.size(); ++i) each.push_back(strays_of(held_[held_heard_[i]], held_ringings_[i], glide_in(held_glide_, i)));
+    for (std::size_t i = 0; i < ringings_.size(); ++i)
+      each.push_back(strays_of(fitted_[d_.heard[i]], ringings_[i], glide_in(d_.structure.glide, i)));
+    for (std::size_t i = 0; i < held_ringings_.size(); ++i)
+      each.push_back(strays_of(held_[held_heard_[i]], held_ringings_[i], glide_in(held_glide_, i)));
     d_.strays = each.front();
     keep_common(&stray_lines::hum, each);
     keep_common(&stray_lines::others, each);
@@ -111,19 +124,23 @@ private:
       for (const double b : {0.0, 0.25, 0.5, 1.0}) own.push_back(partial_frequency(law.fundamental_Hz, b * law.inharmonicity, n));
     for (const auto& l : d_.table.lines) own.push_back(l.frequency_Hz);
     const auto stretch = stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + 2));
-    return find_strays(left_by_lines(stretch, by_table(0), glide), s.rate_Hz, own, std::max(5.0, 0.06 * law.fundamental_Hz), d_.table.lines.back().frequency_Hz);
+    return find_strays(left_by_lines(stretch, by_table(0), glide), s.rate_Hz, own, std::max(5.0, 0.06 * law.fundamental_Hz),
+                       d_.table.lines.back().frequency_Hz);
   }
   /// What not every recording has goes.
   void keep_common(std::vector<stray_line> stray_lines::*kind, const std::vector<stray_lines>& each) {
     std::erase_if(d_.strays.*kind, [&](const stray_line& l) {
       return std::any_of(each.begin() + 1, each.end(), [&](const stray_lines& s) {
         const double reach = std::max(s.resolution_Hz, d_.strays.resolution_Hz);
-        return std::none_of((s.*kind).begin(), (s.*kind).end(), [&](const stray_line& m) { return std::abs(m.frequency_Hz - l.frequency_Hz) < reach; });
+        return std::none_of((s.*kind).begin(), (s.*kind).end(),
+                            [&](const stray_line& m) { return std::abs(m.frequency_Hz - l.frequency_Hz) < reach; });
       });
     });
   }
   /// Null where nothing glides.
-  [[nodiscard]] const glide_found* glide_in(const std::vector<glide_found>& glide, std::size_t i) const { return d_.structure.glides ? &glide[i] : nullptr; }
+  [[nodiscard]] const glide_found* glide_in(const std::vector<glide_found>& glide, std::size_t i) const {
+    return d_.structure.glides ? &glide[i] : nullptr;
+  }
 
   [[nodiscard]] std::vector<predicted_line> by_law(const pickup_law& law, double offset) const {
     std::vector<predicted_line> out;
@@ -160,7 +177,8 @@ private:
   void judge() {
     std::map<int, string_line> reference;
     for (const auto& l : d_.table.lines) reference.emplace(l.number, l);
-    for (std::size_t i = 0; i < held_ringings_.size(); ++i) d_.judged.push_back(judged(i, std::expm1(offset_between(held_tables_[i].lines, reference))));
+    for (std::size_t i = 0; i < held_ringings_.size(); ++i)
+      d_.judged.push_back(judged(i, std::expm1(offset_between(held_tables_[i].lines, reference))));
     const auto overall = [&](const auto& level) {
       double sum = 0;
       for (const auto& j : d_.judged) sum += std::pow(level(j) / j.recorded, 2) / static_cast<double>(d_.judged.size());
@@ -179,7 +197,8 @@ private:
     const glide_found* glide = glide_in(held_glide_, i);
     judged_ringing j{s.take, s.channel, s.rate_Hz, r.start_s, 0, rms_level(stretch.x), {}, {}, 0};
     const auto plain = by_law(d_.law.declared.law, offset);
-    j.before = left_by_lines(stretch, ask_.is_declared("second-polarization") ? doubled(plain) : plain, ask_.is_declared("tension-modulation") ? glide : nullptr);
+    j.before = left_by_lines(stretch, ask_.is_declared("second-polarization") ? doubled(plain) : plain,
+                             ask_.is_declared("tension-modulation") ? glide : nullptr);
     j.after = left_by_lines(stretch, with_strays(doubled(by_law(d_.law.best.law, offset))), glide);
     j.own_poles = rms_level(left_by_lines(stretch, with_strays(by_table(offset)), glide));
     const auto by_itself = left_by_lines(stretch, with_strays(doubled(lines_in(held_tables_[i], 0))), glide);
@@ -188,12 +207,14 @@ private:
   }
 
   void decide() {
-    const double excess = std::sqrt(std::max(0.0, d_.after * d_.after - d_.floor * d_.floor)), was = std::sqrt(std::max(0.0, d_.before * d_.before - d_.floor * d_.floor));
+    const double excess = std::sqrt(std::max(0.0, d_.after * d_.after - d_.floor * d_.floor)),
+                 was = std::sqrt(std::max(0.0, d_.before * d_.before - d_.floor * d_.floor));
     d_.mismatched = !d_.missing.empty() || was > 0.5 * d_.floor;
     d_.explained = !d_.mismatched || (!d_.missing.empty() && excess < std::max(0.5 * d_.floor, 0.12 * was));
     double most = 0;
     for (std::size_t i = 0; i < d_.judged.size(); ++i)
-      if (const double x = rms_level(d_.judged[i].before) / std::max(d_.judged[i].noise, 1e-300); x > most) most = x, d_.worst = i;
+      if (const double x = rms_level(d_.judged[i].before) / std::max(d_.judged[i].noise, 1e-300); x > most)
+        most = x, d_.worst = i;
     if (!d_.judged.empty()) locate(d_.judged[d_.worst]);
   }
   void locate(const judged_ringing& j) {
@@ -208,7 +229,8 @@ private:
     const baseband_bank bank{x, j.rate_Hz, std::min(64.0, 0.45 * f0)};
     most = 0;
     for (int n = 1; n <= d_.table.lines.back().number; ++n)
-      if (const double p = energy_of(bank.around(pickup_pole(d_.law.best.law, n).imag() / full_turn).samples); p > most) most = p, d_.band_Hz = {(n - 0.5) * f0, (n + 0.5) * f0};
+      if (const double p = energy_of(bank.around(pickup_pole(d_.law.best.law, n).imag() / full_turn).samples); p > most)
+        most = p, d_.band_Hz = {(n - 0.5) * f0, (n + 0.5) * f0};
   }
 
   const std::vector<pickup_signal>& fitted_;
@@ -224,7 +246,9 @@ private:
 }  // namespace detail
 
 /// `held`: recordings that are predicted only; never empty.
-[[nodiscard]] inline outcome<pickup_diagnosis> diagnose_pickups(const std::vector<pickup_signal>& fitted, const std::vector<pickup_signal>& held, const pickup_question& ask) {
+[[nodiscard]] inline outcome<pickup_diagnosis> diagnose_pickups(const std::vector<pickup_signal>& fitted,
+                                                                const std::vector<pickup_signal>& held,
+                                                                const pickup_question& ask) {
   return detail::pickup_examination(fitted, held, ask).run();
 }
 

@@ -1,12 +1,12 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// The effects on a string's partials that a single channel can show, each as free numbers of the law (pickup_poles.hpp) with bounds, and
-// where to begin. An effect of a place or of a frequency is sought along it first: how much would a little of it, there, take away? The
-// three best places are then fitted in full. Adding an effect of this kind is one entry.
+// The effects on a string's partials that a single channel can show, each as free numbers of the law (pickup_poles.hpp) with
+// bounds, and where to begin. An effect of a place or of a frequency is sought along it first: how much would a little of it,
+// there, take away? The three best places are then fitted in full. Adding an effect of this kind is one entry.
 //
-// Not here: a position and its mirror image look alike to partials; high-passes, sensors' resonances and the pluck's own shape change
-// amplitudes only, and those are free.
+// Not here: a position and its mirror image look alike to partials; high-passes, sensors' resonances and the pluck's own shape
+// change amplitudes only, and those are free.
 //
 #pragma once
 
@@ -59,25 +59,35 @@ inline std::vector<pickup_law> support_places(double low_Hz, double high_Hz) {
       {"resistive-end", {{"conductance", &l::conductance, 0, 0.2}}, &l::conductance, 1e-7, {{}}},
       {"point-mass",
        {{"position", &l::bead_position, 0.002, 0.5}, {"mass", &l::bead_mass, 0, 0.5}},
-       &l::bead_mass, 1e-6, detail::bead_places(&l::bead_position, highest)},
+       &l::bead_mass,
+       1e-6,
+       detail::bead_places(&l::bead_position, highest)},
       {"point-damper",
        {{"position", &l::finger_position, 0.002, 0.5}, {"resistance", &l::finger_resistance, 0, 1}},
-       &l::finger_resistance, 1e-7, detail::bead_places(&l::finger_position, highest)},
+       &l::finger_resistance,
+       1e-7,
+       detail::bead_places(&l::finger_position, highest)},
       {"support-resonance",
-       {{"frequency_Hz", &l::support_Hz, 0.4 * fundamental_Hz, 1.1 * top, true}, {"q", &l::support_q, 1, 300, true}, {"lightness", &l::support_lightness, 0, 5}},
-       &l::support_lightness, 1e-6, detail::support_places(0.5 * fundamental_Hz, top)},
+       {{"frequency_Hz", &l::support_Hz, 0.4 * fundamental_Hz, 1.1 * top, true},
+        {"q", &l::support_q, 1, 300, true},
+        {"lightness", &l::support_lightness, 0, 5}},
+       &l::support_lightness,
+       1e-6,
+       detail::support_places(0.5 * fundamental_Hz, top)},
   };
 }
 
 /// What every law has.
 [[nodiscard]] inline std::vector<law_parameter> ideal_string(double fundamental_Hz) {
-  return {{"fundamental_Hz", &pickup_law::fundamental_Hz, 0.5 * fundamental_Hz, 2 * fundamental_Hz, true}, {"inverse_quality", &pickup_law::inverse_q, 0, 0.2}};
+  return {{"fundamental_Hz", &pickup_law::fundamental_Hz, 0.5 * fundamental_Hz, 2 * fundamental_Hz, true},
+          {"inverse_quality", &pickup_law::inverse_q, 0, 0.2}};
 }
 
 namespace detail {
 
 /// The law with as much of an effect at each of its places as the score there calls for, the best gain first.
-inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_table& table, const fitted_law& base, const law_effect& e) {
+inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_table& table, const fitted_law& base,
+                                                                   const law_effect& e) {
   std::vector<std::pair<double, pickup_law>> starts;
   const law_problem problem(table, base.parameters, base.in_proportion);
   const Eigen::VectorXd plain = problem.predicted(base.law);
@@ -108,7 +118,9 @@ inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_ta
     for (const double share : {1.0, 0.3}) {
       pickup_law at = starts[i].second;
       at.*e.strength = std::min(at.*e.strength * share, e.parameters.back().high);
-      if (fitted_law f = detail::law_problem(table, parameters, base.in_proportion).fit(at); f.log_likelihood > best.log_likelihood) best = f;
+      if (fitted_law f = detail::law_problem(table, parameters, base.in_proportion).fit(at);
+          f.log_likelihood > best.log_likelihood)
+        best = f;
     }
   if (std::isfinite(best.log_likelihood)) return fit_law(table, parameters, best.law);
   best.parameters = parameters, best.log_likelihood = base.log_likelihood;  // nothing of it anywhere

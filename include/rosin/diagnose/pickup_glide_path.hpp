@@ -1,13 +1,14 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Tension modulation as one channel hears it (Kirchhoff and Carrier): a string that swings is longer, so that every partial is sharp,
+// Tension modulation as one channel hears it (Kirchhoff and Carrier): a string that swings is longer, so that every partial is
+// sharp,
 //
 //     df_m / f_m = g(t) = relative sum_n p_n (1 + d_nm / 2) exp(-2 a_n t),     sum p_n = 1,
 //
-// p_n the powers of the partials as slopes of the string, a_n their decay; a mode stretches itself half as much again. Where the sensor's
-// place is not known the p_n are those of the recording, or all is one exponential of unknown rate: what leaves less is taken. With
-// slopes in absolute units relative = E A / (16 T) sum slope_n^2.
+// p_n the powers of the partials as slopes of the string, a_n their decay; a mode stretches itself half as much again. Where the
+// sensor's place is not known the p_n are those of the recording, or all is one exponential of unknown rate: what leaves less is
+// taken. With slopes in absolute units relative = E A / (16 T) sum slope_n^2.
 //
 #pragma once
 
@@ -26,7 +27,8 @@ struct glide_shape {
   /// Integral over (0, t) for partial m.
   [[nodiscard]] double path_s(int m, double t) const {
     double sum = 0;
-    for (std::size_t i = 0; i < power.size(); ++i) sum += (number[i] == m ? 1.5 : 1.0) * power[i] * -std::expm1(-rate_per_s[i] * t) / rate_per_s[i];
+    for (std::size_t i = 0; i < power.size(); ++i)
+      sum += (number[i] == m ? 1.5 : 1.0) * power[i] * -std::expm1(-rate_per_s[i] * t) / rate_per_s[i];
     return sum;
   }
 };
@@ -45,7 +47,8 @@ struct glide_shape {
 [[nodiscard]] inline glide_shape shape_by_rate(double rate_per_s) { return {{1}, {rate_per_s}, {0}}; }
 
 /// The track with a glide of that strength taken out: one line is fitted anew.
-[[nodiscard]] inline partial_track without_glide(const partial_track& t, const std::vector<double>& path_s, double relative, double tolerance_Hz) {
+[[nodiscard]] inline partial_track without_glide(const partial_track& t, const std::vector<double>& path_s, double relative,
+                                                 double tolerance_Hz) {
   partial_track out = t;
   const double turn = -detail::full_turn * t.fit.model.centre_Hz * relative;
   for (std::size_t j = 0; j < out.samples.size(); ++j) out.samples[j] *= std::polar(1.0, turn * path_s[j]);
@@ -71,7 +74,8 @@ namespace detail {
 /// Strength of a glide by likelihood in the clearest partials, each of them one line or a pair of a known distance.
 class glide_search {
 public:
-  glide_search(const pickup_ringing& r, const glide_shape& shape, double detuning) : r_{r}, shape_{shape}, detuning_{detuning}, which_{clearest(r, 24)} {
+  glide_search(const pickup_ringing& r, const glide_shape& shape, double detuning)
+      : r_{r}, shape_{shape}, detuning_{detuning}, which_{clearest(r, 24)} {
     for (const std::size_t i : which_) {
       path_.push_back(path_along(shape, r.tracks[i]));
       plain_.push_back(value(path_.size() - 1, 0));
@@ -117,7 +121,8 @@ private:
 
 }  // namespace detail
 
-/// The likelier of the shapes; `power_known`: the sensor tells the powers, and no other shape is asked for. detuning: of pairs, or 0.
+/// The likelier of the shapes; `power_known`: the sensor tells the powers, and no other shape is asked for. detuning: of pairs,
+/// or 0.
 [[nodiscard]] inline glide_found find_glide(const pickup_ringing& r, bool power_known, double detuning = 0) {
   glide_found best = detail::glide_search(r, shape_by_power(r), detuning).best();
   if (power_known) return best;

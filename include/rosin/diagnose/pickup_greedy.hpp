@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Which effects does a table of partials call for? One after the other: the effect that raises the evidence most is kept if it is worth
-// it, if it foretells partials that were set aside better, and if it is no crumb of what was found before. Those found earlier are then
-// asked whether they are still needed, and whether another would now do better in their place.
+// Which effects does a table of partials call for? One after the other: the effect that raises the evidence most is kept if it is
+// worth it, if it foretells partials that were set aside better, and if it is no crumb of what was found before. Those found
+// earlier are then asked whether they are still needed, and whether another would now do better in their place.
 //
 #pragma once
 
@@ -12,12 +12,13 @@
 namespace rosin {
 
 struct greedy_limits {
-  double worth = 9;        ///< natural logarithm of the evidence
-  double crumb = 0.08;     ///< of what was gained so far
-  double certain = 3;      ///< standard deviations that its strength is away from nothing
-  double alike = 5;        ///< nearer than that cannot be told apart
+  double worth = 9;     ///< natural logarithm of the evidence
+  double crumb = 0.08;  ///< of what was gained so far
+  double certain = 3;   ///< standard deviations that its strength is away from nothing
+  double alike = 5;     ///< nearer than that cannot be told apart
   int most = 4;
-  double pitch_Hz = 0, pitch_sd = 0.005;  ///< as declared, 0: not; relative. A law that takes the string far from it has to be better for it
+  double pitch_Hz = 0,
+         pitch_sd = 0.005;  ///< as declared, 0: not; relative. A law that takes the string far from it has to be better for it
 };
 
 struct found_in_law {
@@ -47,10 +48,12 @@ struct tried_effect {
   double evidence;
 };
 
-inline std::vector<tried_effect> try_each(const line_table& table, const fitted_law& base, const std::vector<law_effect>& catalogue, const greedy_limits& limits) {
+inline std::vector<tried_effect> try_each(const line_table& table, const fitted_law& base,
+                                          const std::vector<law_effect>& catalogue, const greedy_limits& limits) {
   std::vector<tried_effect> out;
   for (const auto& e : catalogue) {
-    const bool there = std::any_of(base.parameters.begin(), base.parameters.end(), [&](const auto& p) { return p.member == e.strength; });
+    const bool there =
+        std::any_of(base.parameters.begin(), base.parameters.end(), [&](const auto& p) { return p.member == e.strength; });
     if (there || 2 * table.lines.size() < base.parameters.size() + e.parameters.size() + 4) continue;
     fitted_law f = with_effect(table, base, e);
     out.push_back({&e, f, worth_of(f, table.lines.size(), limits)});
@@ -61,14 +64,17 @@ inline std::vector<tried_effect> try_each(const line_table& table, const fitted_
 
 inline fitted_law without_effect(const line_table& table, const fitted_law& fit, const law_effect& e) {
   fitted_law less = fit;
-  std::erase_if(less.parameters, [&](const auto& p) { return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const auto& q) { return q.member == p.member; }); });
+  std::erase_if(less.parameters, [&](const auto& p) {
+    return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const auto& q) { return q.member == p.member; });
+  });
   pickup_law start = fit.law;
   start.*e.strength = 0;
   return fit_law(table, less.parameters, start);
 }
 
 /// Each effect found is taken out and sought anew: it stays, makes room for a better one, or goes.
-inline void exchange(const line_table& table, const std::vector<law_effect>& catalogue, const greedy_limits& limits, law_search& s) {
+inline void exchange(const line_table& table, const std::vector<law_effect>& catalogue, const greedy_limits& limits,
+                     law_search& s) {
   for (std::size_t i = 0; i < s.found.size() && s.found.size() > 1;) {
     const fitted_law less = without_effect(table, s.best, s.found[i].effect);
     const double now = worth_of(s.best, table.lines.size(), limits), before = worth_of(less, table.lines.size(), limits);
@@ -86,8 +92,10 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
 
 }  // namespace detail
 
-/// `held`: partials that are predicted only; those above all of the table are not asked for, and none are where that leaves fewer than four.
-[[nodiscard]] inline law_search search_law(const line_table& table, const fitted_law& declared, const std::vector<law_effect>& catalogue, line_table held = {},
+/// `held`: partials that are predicted only; those above all of the table are not asked for, and none are where that leaves fewer
+/// than four.
+[[nodiscard]] inline law_search search_law(const line_table& table, const fitted_law& declared,
+                                           const std::vector<law_effect>& catalogue, line_table held = {},
                                            const greedy_limits& limits = {}) {
   std::erase_if(held.lines, [&](const string_line& l) { return l.number > table.lines.back().number; });
   law_search s{declared, declared, {}, {}, 0};
@@ -98,15 +106,19 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
     if (round == 0)
       for (const auto& t : tried) s.alone.emplace_back(t.effect->name, std::max(t.evidence - nothing, -1e3));
     const auto good = [&](const detail::tried_effect& t) {
-      const bool foretells = held.lines.size() < 4 || predicted_log_likelihood(held, t.fit) > predicted_log_likelihood(held, s.best);
-      const auto strength = std::find_if(t.fit.parameters.begin(), t.fit.parameters.end(), [&](const auto& p) { return p.member == t.effect->strength; });
+      const bool foretells =
+          held.lines.size() < 4 || predicted_log_likelihood(held, t.fit) > predicted_log_likelihood(held, s.best);
+      const auto strength = std::find_if(t.fit.parameters.begin(), t.fit.parameters.end(),
+                                         [&](const auto& p) { return p.member == t.effect->strength; });
       const bool there = t.fit.law.*t.effect->strength > limits.certain * t.fit.sd_of(strength->name);
       return t.evidence - now > std::max(limits.worth, limits.crumb * (now - nothing)) && foretells && there;
     };
     auto best = std::find_if(tried.begin(), tried.end(), good);
     if (best == tried.end()) break;
     for (auto other = best + 1; other != tried.end(); ++other)  // of those that cannot be told apart the simplest
-      if (other->evidence > tried.front().evidence - limits.alike && other->effect->parameters.size() < best->effect->parameters.size() && good(*other)) best = other;
+      if (other->evidence > tried.front().evidence - limits.alike &&
+          other->effect->parameters.size() < best->effect->parameters.size() && good(*other))
+        best = other;
     found_in_law f{*best->effect, best->evidence - now, {}};
     for (const auto& t : tried)
       if (t.effect != best->effect && t.evidence > tried.front().evidence - limits.alike) f.alike.push_back(t.effect->name);

@@ -1,13 +1,14 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A law (pickup_poles.hpp) fitted to a table of partials, frequencies and decays at once. No law of real strings is exact, so both have a
-// scatter about it beside their own errors,
+// A law (pickup_poles.hpp) fitted to a table of partials, frequencies and decays at once. No law of real strings is exact, so
+// both have a scatter about it beside their own errors,
 //
 //     var f_n = sd^2 + (s_f shape)^2,  shape 1 or n, whichever is likelier;     var a_n = sd^2 + (s_a a_n)^2,
 //
-// found with the law (Huber's proposal 2) and robust against a few wrong partials (1.5 standard deviations). ln L therefore rises only as an
-// effect takes scatter away: what stands for deviations no larger than those that remain is worth nothing, however small the errors.
+// found with the law (Huber's proposal 2) and robust against a few wrong partials (1.5 standard deviations). ln L therefore rises
+// only as an effect takes scatter away: what stands for deviations no larger than those that remain is worth nothing, however
+// small the errors.
 //
 #pragma once
 
@@ -83,7 +84,8 @@ inline double robust_log_likelihood(const Eigen::VectorXd& left, const Eigen::Ve
 class law_problem {
 public:
   law_problem(const line_table& table, const std::vector<law_parameter>& parameters, bool in_proportion)
-      : table_{table}, parameters_{parameters}, proportion_{in_proportion}, rows_{static_cast<Eigen::Index>(table.lines.size())} {}
+      : table_{table}, parameters_{parameters}, proportion_{in_proportion}, rows_{static_cast<Eigen::Index>(table.lines.size())} {
+  }
 
   [[nodiscard]] fitted_law fit(pickup_law start) const {
     fitted_law best;
@@ -109,8 +111,8 @@ public:
     return best;
   }
 
-  /// Asks of a derivative of (f, a): by how much would the weighted squares fall, half of it, if it joined the parameters at this law, and
-  /// what is its best size?
+  /// Asks of a derivative of (f, a): by how much would the weighted squares fall, half of it, if it joined the parameters at this
+  /// law, and what is its best size?
   [[nodiscard]] auto score_at(const pickup_law& l) const {
     const auto state = look(l);
     const Eigen::VectorXd root = state.weight.cwiseSqrt(), r = state.residual.cwiseProduct(root);
@@ -140,7 +142,8 @@ private:
       scatter = scatter_of(d, d.y, half, law_limits);
       const Eigen::VectorXd sigma = spread_of(d, scatter);
       v.residual.segment(b * rows_, rows_) = d.y;
-      for (Eigen::Index i = 0; i < rows_; ++i) v.weight[b * rows_ + i] = law_limits.weight(std::abs(d.y[i]) / sigma[i]) / (sigma[i] * sigma[i]);
+      for (Eigen::Index i = 0; i < rows_; ++i)
+        v.weight[b * rows_ + i] = law_limits.weight(std::abs(d.y[i]) / sigma[i]) / (sigma[i] * sigma[i]);
       v.log_likelihood += robust_log_likelihood(d.y, sigma);
     }
     return v;
@@ -187,21 +190,23 @@ private:
 }  // namespace detail
 
 /// From `start` on, with the scatter of the likelier shape. Precondition: at least four lines.
-[[nodiscard]] inline fitted_law fit_law(const line_table& table, const std::vector<law_parameter>& parameters, const pickup_law& start) {
+[[nodiscard]] inline fitted_law fit_law(const line_table& table, const std::vector<law_parameter>& parameters,
+                                        const pickup_law& start) {
   fitted_law alike = detail::law_problem(table, parameters, false).fit(start);
   fitted_law scaled = detail::law_problem(table, parameters, true).fit(start);
   return scaled.log_likelihood > alike.log_likelihood ? scaled : alike;
 }
 
-/// ln L of other partials of the same string (another pitch is allowed) by a law that was fitted elsewhere, with the scatter that they
-/// themselves have about it.
+/// ln L of other partials of the same string (another pitch is allowed) by a law that was fitted elsewhere, with the scatter that
+/// they themselves have about it.
 [[nodiscard]] inline double predicted_log_likelihood(const line_table& table, const fitted_law& fit) {
   const auto n = static_cast<Eigen::Index>(table.lines.size());
   Eigen::VectorXd y = detail::predicted_lines(table, fit.law), off(n);
   for (Eigen::Index i = 0; i < n; ++i) off[i] = std::log(table.lines[static_cast<std::size_t>(i)].frequency_Hz / y[i]);
   y.head(n) *= std::exp(detail::median_of(off));
   double sum = 0;
-  for (const auto& d : detail::left_by_law(table, y, fit.in_proportion)) sum += detail::robust_log_likelihood(d.y, detail::spread_of(d, detail::scatter_of(d, d.y, 1, detail::law_limits)));
+  for (const auto& d : detail::left_by_law(table, y, fit.in_proportion))
+    sum += detail::robust_log_likelihood(d.y, detail::spread_of(d, detail::scatter_of(d, d.y, 1, detail::law_limits)));
   return sum;
 }
 

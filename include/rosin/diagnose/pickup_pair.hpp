@@ -1,9 +1,10 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Two polarizations as one channel hears them: every partial is a pair of lines, f and f (1 + detuning), with one decay and with amplitudes
-// of their own. The detuning is common to all partials where the supports are rigid; supports that yield differently in the two planes make
-// each pair its own (partial_choice.hpp tells these). Amplitudes are eliminated for each detuning, which is sought on a grid and refined.
+// Two polarizations as one channel hears them: every partial is a pair of lines, f and f (1 + detuning), with one decay and with
+// amplitudes of their own. The detuning is common to all partials where the supports are rigid; supports that yield differently
+// in the two planes make each pair its own (partial_choice.hpp tells these). Amplitudes are eliminated for each detuning, which
+// is sought on a grid and refined.
 //
 #pragma once
 
@@ -41,7 +42,8 @@ likelihood_peak climbed(const Gain& gain, likelihood_peak top, double step, doub
   return top;
 }
 
-/// Standard deviation, by the curvature over a distance at which half a unit is lost (from `h` to at most `widest`); without one: infinite.
+/// Standard deviation, by the curvature over a distance at which half a unit is lost (from `h` to at most `widest`); without one:
+/// infinite.
 template <class Gain>
 double sd_at(const Gain& gain, likelihood_peak top, double h, double widest) {
   while (h < widest && top.gain - gain(top.at + h) < 0.5) h *= 2;
@@ -59,7 +61,8 @@ struct pair_normals {
 inline pair_normals normals_of(complex_span z, double rate_Hz, const line_pair& p, double relative) {
   constexpr std::complex<double> i{0, 1};
   pair_normals n;
-  const auto step = std::exp(std::complex<double>{-p.decay_per_s, p.detuning_rad_s} / rate_Hz), other = std::polar(1.0, p.shift_rad_s / rate_Hz);
+  const auto step = std::exp(std::complex<double>{-p.decay_per_s, p.detuning_rad_s} / rate_Hz),
+             other = std::polar(1.0, p.shift_rad_s / rate_Hz);
   std::complex<double> e = 1, turned = 1;
   std::array<std::complex<double>, 6> row;
   for (std::size_t j = 0; j < z.size(); ++j, e *= step, turned *= other) {
@@ -136,7 +139,10 @@ inline line_pair fit_pair_from(const partial_track& t, line_pair p, double relat
 /// By how much a pair is likelier than one line; none where two lines are large only to cancel each other.
 [[nodiscard]] inline double gain_of_pair(const partial_track& t, const line_pair& p) {
   const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz, energy = detail::energy_of(t.samples) / t.rate_Hz;
-  if (!(damped_part{p.amplitude[0], p.decay_per_s, 0}.energy(lasts) + damped_part{p.amplitude[1], p.decay_per_s, 0}.energy(lasts) < 4 * energy)) return 0;
+  if (!(damped_part{p.amplitude[0], p.decay_per_s, 0}.energy(lasts) +
+            damped_part{p.amplitude[1], p.decay_per_s, 0}.energy(lasts) <
+        4 * energy))
+    return 0;
   return log_likelihood(t, p.residual) - log_likelihood(t, t.fit.residual);
 }
 
@@ -156,10 +162,13 @@ inline double pair_gain(const std::vector<const partial_track*>& tracks, double 
 }
 
 /// The weaker line against the stronger at the release, some time before the tracks begin: the delay that makes their ratio real.
-inline void describe_coupling(const std::vector<const partial_track*>& tracks, const std::vector<line_pair>& pairs, std::size_t main, pair_found& p) {
+inline void describe_coupling(const std::vector<const partial_track*>& tracks, const std::vector<line_pair>& pairs,
+                              std::size_t main, pair_found& p) {
   const auto n = static_cast<Eigen::Index>(pairs.size());
   robust_data each{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd::Ones(n)}, best = each;
-  const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) { y.setConstant(theta[0]), J.setOnes(); };
+  const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) {
+    y.setConstant(theta[0]), J.setOnes();
+  };
   double least = std::numeric_limits<double>::infinity();
   std::vector<double> sharpness;  // what an amplitude's variance is, per noise
   for (std::size_t k = 0; k < pairs.size(); ++k) {

@@ -7,9 +7,9 @@
 //     sin(pi v) = i (Z Y (1 + b v^2) / W' r) cos(pi v) - i sum_loads (z r / W') sin(pi v x) sin(pi v (1 - x))
 //     s = 2 pi i f0 W(v) - pi f (1/Q0 + internal f + air / sqrt(f)) - 2 f0 conductance,     r = s / (2 pi i f0 W(v))
 //
-// z is the load's impedance over the string's (bead: i pi W m/M, finger: R/Z), Y the admittance of an end. Exact for a flexible string
-// however heavy the load; stiffness enters to first order in it, as Rayleigh's quotient would have it. v is found by Newton's
-// method from n on. Masses are in masses of the string M = Z / (2 f0), so that no newton is needed anywhere.
+// z is the load's impedance over the string's (bead: i pi W m/M, finger: R/Z), Y the admittance of an end. Exact for a flexible
+// string however heavy the load; stiffness enters to first order in it, as Rayleigh's quotient would have it. v is found by
+// Newton's method from n on. Masses are in masses of the string M = Z / (2 f0), so that no newton is needed anywhere.
 //
 #pragma once
 
@@ -23,9 +23,9 @@ namespace rosin {
 struct pickup_law {
   double fundamental_Hz = 0, inharmonicity = 0;
   double inverse_q = 0, internal_s = 0, air_sqrt_Hz = 0;
-  double conductance = 0;                             ///< of resistive ends, both together, times Z
-  double bead_position = 0.5, bead_mass = 0;          ///< of the string's mass
-  double finger_position = 0.5, finger_resistance = 0;  ///< of Z
+  double conductance = 0;                                       ///< of resistive ends, both together, times Z
+  double bead_position = 0.5, bead_mass = 0;                    ///< of the string's mass
+  double finger_position = 0.5, finger_resistance = 0;          ///< of Z
   double support_Hz = 1, support_q = 1, support_lightness = 0;  ///< mass of the string / mass of the support
 };
 
@@ -33,21 +33,26 @@ namespace detail {
 
 /// Decay rate by the law of losses alone, 1/s.
 inline double pickup_loss_rate(const pickup_law& l, double f) {
-  return std::numbers::pi * f * (l.inverse_q + l.internal_s * f + l.air_sqrt_Hz / std::sqrt(f)) + 2 * l.fundamental_Hz * l.conductance;
+  return std::numbers::pi * f * (l.inverse_q + l.internal_s * f + l.air_sqrt_Hz / std::sqrt(f)) +
+         2 * l.fundamental_Hz * l.conductance;
 }
 
 /// Left side minus right side of the equation above. A lossy string's wave number goes with s + loss, its loads feel s.
 inline std::complex<double> pickup_characteristic(const pickup_law& l, std::complex<double> v, double loss_per_s) {
   constexpr std::complex<double> i{0, 1};
   const auto stiff = 1.0 + l.inharmonicity * v * v, root = std::sqrt(stiff), slope = (1.0 + 2.0 * l.inharmonicity * v * v) / root;
-  const auto all = std::numbers::pi * v, w = v * root + i * loss_per_s / (2 * std::numbers::pi * l.fundamental_Hz), lossy = w / (v * root);
+  const auto all = std::numbers::pi * v, w = v * root + i * loss_per_s / (2 * std::numbers::pi * l.fundamental_Hz),
+             lossy = w / (v * root);
   auto value = std::sin(all);
   if (l.support_lightness != 0) {
     const auto x = w * l.fundamental_Hz / l.support_Hz;  // of the support's resonance
-    const auto zy = l.support_lightness * l.fundamental_Hz / (std::numbers::pi * l.support_Hz) * i * x / (1.0 - x * x + i * x / l.support_q);
+    const auto zy =
+        l.support_lightness * l.fundamental_Hz / (std::numbers::pi * l.support_Hz) * i * x / (1.0 - x * x + i * x / l.support_q);
     value -= i * zy / lossy * stiff / slope * std::cos(all);
   }
-  const auto load = [&](std::complex<double> z, double x) { value += i * z * lossy / slope * std::sin(all * x) * std::sin(all * (1 - x)); };
+  const auto load = [&](std::complex<double> z, double x) {
+    value += i * z * lossy / slope * std::sin(all * x) * std::sin(all * (1 - x));
+  };
   if (l.bead_mass != 0) load(i * std::numbers::pi * w * l.bead_mass, l.bead_position);
   if (l.finger_resistance != 0) load(l.finger_resistance, l.finger_position);
   return value;
@@ -63,7 +68,8 @@ inline std::complex<double> pickup_characteristic(const pickup_law& l, std::comp
     for (int k = 0; k < 12; ++k) {
       constexpr double h = 1e-6;
       const double loss = detail::pickup_loss_rate(l, std::abs(pitch(v).real()));
-      const auto slope = (detail::pickup_characteristic(l, v + h, loss) - detail::pickup_characteristic(l, v - h, loss)) / (2 * h);
+      const auto slope =
+          (detail::pickup_characteristic(l, v + h, loss) - detail::pickup_characteristic(l, v - h, loss)) / (2 * h);
       auto step = -detail::pickup_characteristic(l, v, loss) / slope;
       if (std::abs(step) > 0.1) step *= 0.1 / std::abs(step);
       v += step;

@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Poles against a recording: the string's lines (gliding, where it glides) with amplitude and phase of each line free, by least squares on the
-// samples themselves. Nothing else is free, so what is left over judges frequencies and decays alone. Position and strength of the pluck,
-// the place and the response of the sensor are all in the amplitudes: they are nuisances here.
+// Poles against a recording: the string's lines (gliding, where it glides) with amplitude and phase of each line free, by least
+// squares on the samples themselves. Nothing else is free, so what is left over judges frequencies and decays alone. Position and
+// strength of the pluck, the place and the response of the sensor are all in the amplitudes: they are nuisances here.
 //
 //     x(t) = sum_n Re{ A_n exp(s_n t + 2 pi i f_n relative path_n(t)) }
 //
@@ -36,7 +36,9 @@ struct judged_stretch {
 [[nodiscard]] inline judged_stretch stretch_of(const pickup_signal& s, double start_s, double stop_s) {
   const auto from = std::min(static_cast<std::size_t>(start_s * s.rate_Hz), s.values.size());
   const auto to = std::clamp(static_cast<std::size_t>(stop_s * s.rate_Hz), from, s.values.size());
-  judged_stretch out{{s.values.begin() + static_cast<std::ptrdiff_t>(from), s.values.begin() + static_cast<std::ptrdiff_t>(to)}, s.rate_Hz, start_s};
+  judged_stretch out{{s.values.begin() + static_cast<std::ptrdiff_t>(from), s.values.begin() + static_cast<std::ptrdiff_t>(to)},
+                     s.rate_Hz,
+                     start_s};
   double mean = 0;
   for (const double v : out.x) mean += v / static_cast<double>(out.x.size());
   for (double& v : out.x) v -= mean;
@@ -48,12 +50,14 @@ struct judged_stretch {
   const auto block = std::max<std::size_t>(1, static_cast<std::size_t>(0.05 * s.rate_Hz));
   const double begin = detail::sound_begins_s(s.values, s.rate_Hz) + 0.05 + 2 / std::min(64.0, 0.45 * nominal_Hz);
   std::vector<double> level;
-  for (std::size_t j = 0; j + block <= s.values.size(); j += block) level.push_back(rms_level(std::span<const double>{s.values}.subspan(j, block)));
+  for (std::size_t j = 0; j + block <= s.values.size(); j += block)
+    level.push_back(rms_level(std::span<const double>{s.values}.subspan(j, block)));
   std::vector<double> sorted = level;
   std::sort(sorted.begin(), sorted.end());
   std::size_t last = level.size();
   while (last > 1 && level[last - 1] < std::sqrt(3.0) * sorted[sorted.size() / 10]) --last;
-  const double end = std::min(static_cast<double>(last * block) / s.rate_Hz, begin + 4), whole = static_cast<double>(s.values.size()) / s.rate_Hz;
+  const double end = std::min(static_cast<double>(last * block) / s.rate_Hz, begin + 4),
+               whole = static_cast<double>(s.values.size()) / s.rate_Hz;
   const double middle = 0.5 * (begin + (end > begin + 0.6 ? end : std::min(whole, begin + 4)));
   std::pair<pickup_signal, pickup_signal> out{s, s};
   out.first.to_s = middle, out.second.from_s = middle;
@@ -67,7 +71,8 @@ namespace detail {
 class coarse_path {
 public:
   coarse_path(const glide_shape& shape, int number, double rate_Hz, std::size_t count) {
-    for (std::size_t j = 0; j <= count / every + 1; ++j) at_.push_back(shape.path_s(number, static_cast<double>(j * every) / rate_Hz));
+    for (std::size_t j = 0; j <= count / every + 1; ++j)
+      at_.push_back(shape.path_s(number, static_cast<double>(j * every) / rate_Hz));
   }
   [[nodiscard]] double operator[](std::size_t j) const {
     const double share = static_cast<double>(j % every) / every;
@@ -81,7 +86,8 @@ private:
 
 class line_columns {
 public:
-  line_columns(const std::vector<predicted_line>& lines, const glide_found* glide, double rate_Hz, std::size_t count) : lines_{lines}, rate_Hz_{rate_Hz} {
+  line_columns(const std::vector<predicted_line>& lines, const glide_found* glide, double rate_Hz, std::size_t count)
+      : lines_{lines}, rate_Hz_{rate_Hz} {
     if (glide == nullptr || !(glide->relative > 0)) return;
     relative_ = glide->relative;
     for (const auto& l : lines) paths_.emplace_back(glide->shape, l.number, rate_Hz, count);
@@ -119,7 +125,8 @@ inline Eigen::VectorXd amplitudes_by(const Eigen::MatrixXd& gram, const Eigen::V
 }  // namespace detail
 
 /// What these lines leave of it.
-[[nodiscard]] inline std::vector<double> left_by_lines(const judged_stretch& s, const std::vector<predicted_line>& lines, const glide_found* glide = nullptr) {
+[[nodiscard]] inline std::vector<double> left_by_lines(const judged_stretch& s, const std::vector<predicted_line>& lines,
+                                                       const glide_found* glide = nullptr) {
   constexpr std::size_t block = 512;
   const detail::line_columns columns(lines, glide, s.rate_Hz, s.x.size());
   const auto n = static_cast<Eigen::Index>(2 * lines.size());
@@ -145,8 +152,8 @@ inline Eigen::VectorXd amplitudes_by(const Eigen::MatrixXd& gram, const Eigen::V
   return left;
 }
 
-/// The recording's own noise: the quietest of its pieces of 50 ms, of what lines that were fitted to itself leave. Noise that comes and goes,
-/// and whatever else those lines lack, does not count as noise.
+/// The recording's own noise: the quietest of its pieces of 50 ms, of what lines that were fitted to itself leave. Noise that
+/// comes and goes, and whatever else those lines lack, does not count as noise.
 [[nodiscard]] inline double quietest_piece(std::span<const double> left, double rate_Hz) {
   const auto block = std::max<std::size_t>(256, static_cast<std::size_t>(0.05 * rate_Hz));
   double least = rms_level(left);

@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// What one channel heard of one pluck, before any law: the partials as tracks at baseband (partials.hpp), each with how much information
-// it holds. Likelihoods of all that is asked of such tracks later have one form. Of a track with M real numbers of which a model leaves
-// the energy R (noise and whatever else it lacks),
+// What one channel heard of one pluck, before any law: the partials as tracks at baseband (partials.hpp), each with how much
+// information it holds. Likelihoods of all that is asked of such tracks later have one form. Of a track with M real numbers of
+// which a model leaves the energy R (noise and whatever else it lacks),
 //
 //     ln L = -M/2 ln R,
 //
@@ -31,7 +31,7 @@ struct pickup_signal {
   double rate_Hz = 0;
   std::vector<double> values;
   pickup_kind kind = pickup_kind::sound;
-  double position = 0;  ///< of the sensor, fraction of the length; 0: unknown
+  double position = 0;                                                 ///< of the sensor, fraction of the length; 0: unknown
   double from_s = -1, to_s = std::numeric_limits<double>::infinity();  ///< to be looked at; -1: from the release on
 };
 
@@ -52,7 +52,9 @@ struct pickup_ringing {
 [[nodiscard]] inline double numbers_in(const partial_track& t) {
   return 2 * detail::filled_with_noise(t.window, t.rate_Hz) * static_cast<double>(t.samples.size());
 }
-[[nodiscard]] inline double log_likelihood(const partial_track& t, double residual) { return -0.5 * numbers_in(t) * std::log(std::max(residual, 1e-300)); }
+[[nodiscard]] inline double log_likelihood(const partial_track& t, double residual) {
+  return -0.5 * numbers_in(t) * std::log(std::max(residual, 1e-300));
+}
 
 namespace detail {
 
@@ -74,7 +76,8 @@ inline double slope_weight(pickup_kind kind, double position, int n) {
 /// The tracks that say most, at most so many, by their place in the ringing.
 [[nodiscard]] inline std::vector<std::size_t> clearest(const pickup_ringing& r, std::size_t at_most = 24) {
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < r.tracks.size(); ++i) order.emplace_back(-detail::energy_of(r.tracks[i].samples) / std::max(noise_of(r.tracks[i]).away, 1e-300), i);
+  for (std::size_t i = 0; i < r.tracks.size(); ++i)
+    order.emplace_back(-detail::energy_of(r.tracks[i].samples) / std::max(noise_of(r.tracks[i]).away, 1e-300), i);
   std::sort(order.begin(), order.end());
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < std::min(at_most, order.size()); ++k) out.push_back(order[k].second);
@@ -82,26 +85,32 @@ inline double slope_weight(pickup_kind kind, double position, int n) {
 }
 
 /// The partials between from_s and to_s. Fails as fit_pickup does.
-[[nodiscard]] inline outcome<pickup_ringing> listen(const pickup_signal& s, double nominal_Hz, const pickup_options& options = {}) {
-  if (const auto problem = detail::pickup_input_problem(s.values, s.rate_Hz, nominal_Hz, options); !problem.empty()) return failure{problem};
+[[nodiscard]] inline outcome<pickup_ringing> listen(const pickup_signal& s, double nominal_Hz,
+                                                    const pickup_options& options = {}) {
+  if (const auto problem = detail::pickup_input_problem(s.values, s.rate_Hz, nominal_Hz, options); !problem.empty())
+    return failure{problem};
   const std::span<const double> all{s.values};
   const double end = std::min(s.to_s, static_cast<double>(all.size()) / s.rate_Hz), least = std::max(0.15, 12 / nominal_Hz);
   const failure brief{"signal: less than " + std::to_string(least) + " s of ringing to look at"};
   if (!(end > least)) return brief;
   const baseband_bank bank{all, s.rate_Hz, std::min(64.0, 0.45 * nominal_Hz)};
-  const double begin = s.from_s >= 0 ? s.from_s : detail::sound_begins_s(all.first(static_cast<std::size_t>(end * s.rate_Hz)), s.rate_Hz) + std::max(options.skip_s, bank.settling_s());
+  const double begin = s.from_s >= 0 ? s.from_s
+                                     : detail::sound_begins_s(all.first(static_cast<std::size_t>(end * s.rate_Hz)), s.rate_Hz) +
+                                           std::max(options.skip_s, bank.settling_s());
   const double stop = end - bank.settling_s() / 2;
   if (!(stop - begin > least)) return brief;
   pickup_ringing r{0, 0, begin, stop, {}, {}};
   const double seen = std::min(stop - begin, std::max(1.0, 50 / nominal_Hz));
-  const auto found = find_partials(all.subspan(static_cast<std::size_t>(begin * s.rate_Hz), static_cast<std::size_t>(seen * s.rate_Hz)), s.rate_Hz,
-                                   nominal_Hz, options.search_range, options.partials_at_most);
+  const auto found =
+      find_partials(all.subspan(static_cast<std::size_t>(begin * s.rate_Hz), static_cast<std::size_t>(seen * s.rate_Hz)),
+                    s.rate_Hz, nominal_Hz, options.search_range, options.partials_at_most);
   r.fundamental_Hz = found.fundamental_Hz;
   r.tolerance_Hz = std::min(0.12 * found.fundamental_Hz, 3.0);
   r.tracks = detail::pickup_tracks(bank, found, begin, stop, options.highest_Hz, r.tolerance_Hz);
   for (auto& t : r.tracks) t.fit = fit_one_line(t.samples, t.rate_Hz, t.fit.model.centre_Hz, 1.5 * r.tolerance_Hz);
   if (r.tracks.size() < 4) return failure{"partials: fewer than four stand out near multiples of the nominal fundamental"};
-  for (const auto& t : r.tracks) r.power.push_back(detail::power_at_start(t) * detail::slope_weight(s.kind, s.position, t.number));
+  for (const auto& t : r.tracks)
+    r.power.push_back(detail::power_at_start(t) * detail::slope_weight(s.kind, s.position, t.number));
   return r;
 }
 

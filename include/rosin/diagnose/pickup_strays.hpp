@@ -1,10 +1,10 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Lines in a recording that are no partials of the string: harmonics of the mains, which are steady, and other strings that ring along at
-// pitches of their own. They are sought in what the string's own lines leave over. A line counts where its power is far above the median of
-// its surroundings (partial_search.hpp); one at a multiple of 50 or 60 Hz counts as hum where it is as strong in the second half as in the
-// first.
+// Lines in a recording that are no partials of the string: harmonics of the mains, which are steady, and other strings that ring
+// along at pitches of their own. They are sought in what the string's own lines leave over. A line counts where its power is far
+// above the median of its surroundings (partial_search.hpp); one at a multiple of 50 or 60 Hz counts as hum where it is as strong
+// in the second half as in the first.
 //
 #pragma once
 
@@ -45,12 +45,15 @@ inline double amplitude_of_line(std::span<const double> x, double f, double rate
 
 inline stray_line seen_at(std::span<const double> x, double rate_Hz, const peak_finder& peaks, const peak_finder::peak& p) {
   const std::size_t half = x.size() / 2;
-  const double first = amplitude_of_line(x.first(half), p.frequency_Hz, rate_Hz), second = amplitude_of_line(x.subspan(half), p.frequency_Hz, rate_Hz);
-  return {p.frequency_Hz, amplitude_of_line(x, p.frequency_Hz, rate_Hz), p.power / peaks.floor_at(p.frequency_Hz), second / std::max(first, 1e-300)};
+  const double first = amplitude_of_line(x.first(half), p.frequency_Hz, rate_Hz),
+               second = amplitude_of_line(x.subspan(half), p.frequency_Hz, rate_Hz);
+  return {p.frequency_Hz, amplitude_of_line(x, p.frequency_Hz, rate_Hz), p.power / peaks.floor_at(p.frequency_Hz),
+          second / std::max(first, 1e-300)};
 }
 
 /// The mains' harmonics that stand out and are steady.
-inline void find_hum(std::span<const double> x, double rate_Hz, const peak_finder& peaks, const std::function<bool(double)>& free, stray_lines& out) {
+inline void find_hum(std::span<const double> x, double rate_Hz, const peak_finder& peaks, const std::function<bool(double)>& free,
+                     stray_lines& out) {
   double most = 60;
   for (const double base : {50.0, 60.0}) {
     std::vector<stray_line> found;
@@ -70,8 +73,10 @@ inline void find_hum(std::span<const double> x, double rate_Hz, const peak_finde
 
 }  // namespace detail
 
-/// `own`: frequencies of the string's partials, each with `near_Hz` around it out of bounds. Precondition: a second of sound or so.
-[[nodiscard]] inline stray_lines find_strays(std::span<const double> residual, double rate_Hz, const std::vector<double>& own, double near_Hz, double highest_Hz) {
+/// `own`: frequencies of the string's partials, each with `near_Hz` around it out of bounds. Precondition: a second of sound or
+/// so.
+[[nodiscard]] inline stray_lines find_strays(std::span<const double> residual, double rate_Hz, const std::vector<double>& own,
+                                             double near_Hz, double highest_Hz) {
   const detail::peak_finder peaks{residual, rate_Hz, 60};
   stray_lines out;
   out.resolution_Hz = 4 * peaks.bin_Hz();
@@ -82,7 +87,9 @@ inline void find_hum(std::span<const double> x, double rate_Hz, const peak_finde
   for (double f = 30; f < highest_Hz; f += 4) {
     const auto p = peaks.strongest(f, f + 4);
     if (!p || !free(p->frequency_Hz) || p->power < 60 * peaks.floor_at(p->frequency_Hz)) continue;
-    if (out.mains_Hz > 0 && std::abs(p->frequency_Hz - out.mains_Hz * std::round(p->frequency_Hz / out.mains_Hz)) < out.resolution_Hz) continue;
+    if (out.mains_Hz > 0 &&
+        std::abs(p->frequency_Hz - out.mains_Hz * std::round(p->frequency_Hz / out.mains_Hz)) < out.resolution_Hz)
+      continue;
     if (!out.others.empty() && std::abs(out.others.back().frequency_Hz - p->frequency_Hz) < out.resolution_Hz) continue;
     const stray_line line = detail::seen_at(residual, rate_Hz, peaks, *p);
     if (line.change > 0.02 && line.change < 5) out.others.push_back(line);

@@ -1,11 +1,11 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// What the partials of all ringings are, before asking what law they follow: single lines, pairs with one detuning, pairs each of its own;
-// steady in pitch, or gliding. All of these are fitted to the same tracks, with frequency, decay and amplitude of every partial free,
-// and the likeliest is kept (Schwarz: each free number costs half the logarithm of the numbers it is taken from). A glide and a pair look
-// alike for a while, so both orders of finding them are tried. An effect has to show in most partials: a neighbour can look like
-// anything, but in one partial only.
+// What the partials of all ringings are, before asking what law they follow: single lines, pairs with one detuning, pairs each of
+// its own; steady in pitch, or gliding. All of these are fitted to the same tracks, with frequency, decay and amplitude of every
+// partial free, and the likeliest is kept (Schwarz: each free number costs half the logarithm of the numbers it is taken from). A
+// glide and a pair look alike for a while, so both orders of finding them are tried. An effect has to show in most partials: a
+// neighbour can look like anything, but in one partial only.
 //
 #pragma once
 
@@ -17,9 +17,9 @@ namespace rosin {
 
 /// What may be there, and what the declared model holds already.
 struct structure_question {
-  bool glide = true, pairs = true;             ///< may be found
+  bool glide = true, pairs = true;                      ///< may be found
   bool glide_declared = false, pairs_declared = false;  ///< are taken for granted
-  std::vector<bool> power_known;               ///< per ringing
+  std::vector<bool> power_known;                        ///< per ringing
 };
 
 struct structure_hypothesis {
@@ -52,13 +52,15 @@ inline std::vector<const partial_track*> clearest_of(const std::vector<pickup_ri
   return out;
 }
 
-inline structure_hypothesis with_glide(const std::vector<pickup_ringing>& all, const structure_question& ask, const structure_hypothesis& base) {
+inline structure_hypothesis with_glide(const std::vector<pickup_ringing>& all, const structure_question& ask,
+                                       const structure_hypothesis& base) {
   structure_hypothesis h = base;
   h.glides = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
     glide_found g = find_glide(all[i], ask.power_known[i], base.paired ? base.pair.detuning : 0);
     const double worth = g.gain - std::log(static_cast<double>(all[i].tracks.size()) * 100);
-    if (!(g.relative > 0) || !(worth > 0) || g.agreeing < agreement || !(g.relative > 3 * g.sd)) g.relative = 0, g.sd = 0, g.gain = 0;
+    if (!(g.relative > 0) || !(worth > 0) || g.agreeing < agreement || !(g.relative > 3 * g.sd))
+      g.relative = 0, g.sd = 0, g.gain = 0;
     else h.evidence += worth, h.glides = true;
     h.glide.push_back(g);
   }
@@ -85,11 +87,13 @@ inline structure_hypothesis with_doubles(const std::vector<pickup_ringing>& all,
   for (const auto& r : still)
     for (const std::size_t i : clearest(r)) {
       const partial_track& t = r.tracks[i];
-      const line_fit two = one_or_two_lines(t.samples, t.rate_Hz, t.fit, 1.5 * r.tolerance_Hz, filled_with_noise(t.window, t.rate_Hz));
+      const line_fit two =
+          one_or_two_lines(t.samples, t.rate_Hz, t.fit, 1.5 * r.tolerance_Hz, filled_with_noise(t.window, t.rate_Hz));
       count += 1;
       if (two.model.parts.size() < 2) continue;
       doubled += 1;
-      h.evidence += log_likelihood(t, two.residual) - log_likelihood(t, t.fit.residual) - 2 * std::log(std::max(numbers_in(t), 2.0));
+      h.evidence +=
+          log_likelihood(t, two.residual) - log_likelihood(t, t.fit.residual) - 2 * std::log(std::max(numbers_in(t), 2.0));
     }
   h.doubled = doubled > 0.4 * count;
   if (!h.doubled) h.evidence = base.evidence;
@@ -112,9 +116,10 @@ inline structure_hypothesis refined(const std::vector<pickup_ringing>& all, stru
 
 }  // namespace detail
 
-/// All that was tried, the likeliest first; but two effects only where the second is worth three tenths of what one alone is, since no
-/// model of a glide is exact, and what one effect leaves another one takes up.
-[[nodiscard]] inline std::vector<structure_hypothesis> structures_of(const std::vector<pickup_ringing>& all, const structure_question& ask) {
+/// All that was tried, the likeliest first; but two effects only where the second is worth three tenths of what one alone is,
+/// since no model of a glide is exact, and what one effect leaves another one takes up.
+[[nodiscard]] inline std::vector<structure_hypothesis> structures_of(const std::vector<pickup_ringing>& all,
+                                                                     const structure_question& ask) {
   std::vector<structure_hypothesis> tried{{}};
   const bool glide = ask.glide || ask.glide_declared, pairs = ask.pairs || ask.pairs_declared;
   if (glide) tried.push_back(detail::with_glide(all, ask, {}));
@@ -123,7 +128,8 @@ inline structure_hypothesis refined(const std::vector<pickup_ringing>& all, stru
     for (std::size_t i = 0; i < steps; ++i) {
       if (i > 0 && !tried[i].glides) continue;
       tried.push_back(detail::refined(all, detail::with_pairs(all, tried[i])));
-      if (i == 0 && glide && tried.back().paired) tried.push_back(detail::refined(all, detail::with_glide(all, ask, tried.back())));
+      if (i == 0 && glide && tried.back().paired)
+        tried.push_back(detail::refined(all, detail::with_glide(all, ask, tried.back())));
       tried.push_back(detail::with_doubles(all, tried[i]));
     }
   }
@@ -131,7 +137,9 @@ inline structure_hypothesis refined(const std::vector<pickup_ringing>& all, stru
   const auto effects = [](const structure_hypothesis& h) { return (h.glides ? 1 : 0) + (h.paired || h.doubled ? 1 : 0); };
   for (const auto& h : tried)
     if (effects(h) == 1) alone = std::max(alone, h.evidence);
-  std::erase_if(tried, [&](const auto& h) { return effects(h) == 2 && h.evidence < 1.3 * alone && !(ask.glide_declared || ask.pairs_declared); });
+  std::erase_if(tried, [&](const auto& h) {
+    return effects(h) == 2 && h.evidence < 1.3 * alone && !(ask.glide_declared || ask.pairs_declared);
+  });
   std::stable_sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
   return tried;
 }

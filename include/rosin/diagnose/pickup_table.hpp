@@ -1,9 +1,10 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// One table of partials for a string, from all ringings of it: frequency and decay of every partial with standard deviations. Takes may be
-// tuned a little differently (temperature, a finger's pressure): the ratio of their pitches is taken out, from the partials that they share.
-// Where takes disagree about a partial by more than their errors, the errors of the mean grow accordingly.
+// One table of partials for a string, from all ringings of it: frequency and decay of every partial with standard deviations.
+// Takes may be tuned a little differently (temperature, a finger's pressure): the ratio of their pitches is taken out, from the
+// partials that they share. Where takes disagree about a partial by more than their errors, the errors of the mean grow
+// accordingly.
 //
 #pragma once
 
@@ -36,15 +37,27 @@ inline std::optional<string_line> line_of_pair(const partial_track& t, double de
   const std::size_t main = detuning > 0 ? 0 : 1;  // the stronger
   const double shift = main == 0 ? 0 : p.shift_rad_s;
   std::vector<std::complex<double>> left = t.samples;
-  const line_model both{{{p.amplitude[0], p.decay_per_s, p.detuning_rad_s}, {p.amplitude[1], p.decay_per_s, p.detuning_rad_s + p.shift_rad_s}}, t.fit.model.centre_Hz, {}};
-  const double noise = std::max(noise_beside(left_over(t.samples, t.rate_Hz, both), t.rate_Hz, both.parts[main], t.window).at_line, 1e-24 * energy_of(t.samples));
-  const Eigen::MatrixXd information = p.information, covariance = noise / 2 * information.completeOrthogonalDecomposition().pseudoInverse();
-  return string_line{t.number, t.fit.model.centre_Hz + (p.detuning_rad_s + shift) / full_turn, std::sqrt(covariance(5, 5)) / full_turn, p.decay_per_s, std::sqrt(covariance(4, 4)), 0};
+  const line_model both{
+      {{p.amplitude[0], p.decay_per_s, p.detuning_rad_s}, {p.amplitude[1], p.decay_per_s, p.detuning_rad_s + p.shift_rad_s}},
+      t.fit.model.centre_Hz,
+      {}};
+  const double noise =
+      std::max(noise_beside(left_over(t.samples, t.rate_Hz, both), t.rate_Hz, both.parts[main], t.window).at_line,
+               1e-24 * energy_of(t.samples));
+  const Eigen::MatrixXd information = p.information,
+                        covariance = noise / 2 * information.completeOrthogonalDecomposition().pseudoInverse();
+  return string_line{t.number,
+                     t.fit.model.centre_Hz + (p.detuning_rad_s + shift) / full_turn,
+                     std::sqrt(covariance(5, 5)) / full_turn,
+                     p.decay_per_s,
+                     std::sqrt(covariance(4, 4)),
+                     0};
 }
 
 inline std::optional<string_line> line_of(partial_track t, const structure_hypothesis& h, const pickup_ringing& r) {
   if (h.paired) return line_of_pair(t, h.pair.detuning);
-  if (h.doubled) t.fit = one_or_two_lines(t.samples, t.rate_Hz, t.fit, 1.5 * r.tolerance_Hz, filled_with_noise(t.window, t.rate_Hz));
+  if (h.doubled)
+    t.fit = one_or_two_lines(t.samples, t.rate_Hz, t.fit, 1.5 * r.tolerance_Hz, filled_with_noise(t.window, t.rate_Hz));
   const partial p = summary_of(t);
   string_line out{p.number, p.frequency_Hz, p.frequency_sd, p.decay_per_s, p.decay_sd, 0};
   if (t.fit.model.parts.size() < 2) return out;
@@ -64,8 +77,11 @@ inline double offset_between(const std::vector<string_line>& lines, const std::m
     }
   if (y.size() < 2) return y.empty() ? 0.0 : y[0];
   const auto n = static_cast<Eigen::Index>(y.size());
-  const robust_data d{Eigen::Map<Eigen::VectorXd>(y.data(), n), Eigen::Map<Eigen::VectorXd>(v.data(), n), Eigen::VectorXd::Ones(n)};
-  const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& out, Eigen::MatrixXd& J) { out.setConstant(theta[0]), J.setOnes(); };
+  const robust_data d{Eigen::Map<Eigen::VectorXd>(y.data(), n), Eigen::Map<Eigen::VectorXd>(v.data(), n),
+                      Eigen::VectorXd::Ones(n)};
+  const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& out, Eigen::MatrixXd& J) {
+    out.setConstant(theta[0]), J.setOnes();
+  };
   return robust_regression(d, constant, Eigen::VectorXd::Constant(1, median_of(d.y))).value[0];
 }
 
@@ -102,7 +118,8 @@ inline line_table combined(const std::vector<std::vector<string_line>>& each) {
     }
   }
   for (const auto& [number, s] : sums)
-    table.lines.push_back({number, s[0].mean(), s[0].sd(), s[1].mean(), s[1].sd(), splits.count(number) > 0 ? splits[number].mean() : 0.0});
+    table.lines.push_back(
+        {number, s[0].mean(), s[0].sd(), s[1].mean(), s[1].sd(), splits.count(number) > 0 ? splits[number].mean() : 0.0});
   return table;
 }
 
@@ -125,7 +142,8 @@ inline void widen(std::vector<string_line>& lines, const glide_found& g) {
     const auto& r = still[k];
     auto& lines = each.emplace_back();
     for (const auto& t : r.tracks)
-      if (const auto l = detail::line_of(t, h, r); l && std::isfinite(l->frequency_sd) && std::isfinite(l->decay_sd) && l->decay_sd > 0 && l->frequency_sd > 0 &&
+      if (const auto l = detail::line_of(t, h, r); l && std::isfinite(l->frequency_sd) && std::isfinite(l->decay_sd) &&
+                                                   l->decay_sd > 0 && l->frequency_sd > 0 &&
                                                    l->frequency_sd < 0.02 * r.fundamental_Hz && l->decay_per_s > l->decay_sd)
         lines.push_back(*l);
     if (h.glides) detail::widen(lines, h.glide[k]);

@@ -4,8 +4,8 @@
 // Which effect of the catalogue, added to what is in the model already, explains most of what the plucks hold besides?
 //
 // Every starting point of every effect is put to a score test, which costs a millisecond; the best few of each effect are fitted
-// over the first periods; and the best few of these over all of the record. Where the model is far off, the score is taken over the
-// first three and eight periods: there an effect is still where it began, and the biased pitch has not spread it over everything.
+// over the first periods; and the best few of these over all of the record. Where the model is far off, the score is taken over
+// the first three and eight periods: there an effect is still where it began, and a biased pitch has not spread it.
 //
 #pragma once
 
@@ -30,8 +30,8 @@ inline double cost_of(const scene_fit& f, const std::array<double, 2>& noise) {
   return std::isfinite(cost) ? cost : 1e300;
 }
 
-/// -2 ln of the evidence but for a constant (Schwarz): what a fit leaves, and what its effects' parameters cost, in the units of what
-/// is left. Corrections cost nothing.
+/// -2 ln of the evidence but for a constant (Schwarz): what a fit leaves, and what its effects' parameters cost, in the units of
+/// what is left. Corrections cost nothing.
 inline double price_of(const scene_fit& f, const std::array<double, 2>& noise) {
   double parameters = 0, samples = 1;
   for (const pluck_effect& e : f.effects)
@@ -42,7 +42,8 @@ inline double price_of(const scene_fit& f, const std::array<double, 2>& noise) {
 }
 
 /// The starting points of one effect at which the score peaks, the highest first.
-inline std::vector<scored_start> best_starts(const pluck_score& test, const scene_plucks& with, const pluck_effect& e, std::size_t most) {
+inline std::vector<scored_start> best_starts(const pluck_score& test, const scene_plucks& with, const pluck_effect& e,
+                                             std::size_t most) {
   std::vector<scored_start> all;
   for (const auto& start : e.starts) {
     const score_result s = test(with, start);
@@ -59,7 +60,8 @@ inline std::vector<scored_start> best_starts(const pluck_score& test, const scen
   }
   std::vector<scored_start> peaks;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].gain > 3 && (i == 0 || all[i].gain >= all[i - 1].gain) && (i + 1 == all.size() || all[i].gain > all[i + 1].gain)) peaks.push_back(all[i]);
+    if (all[i].gain > 3 && (i == 0 || all[i].gain >= all[i - 1].gain) && (i + 1 == all.size() || all[i].gain > all[i + 1].gain))
+      peaks.push_back(all[i]);
   std::sort(peaks.begin(), peaks.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
   if (peaks.size() > most) peaks.erase(peaks.begin() + static_cast<std::ptrdiff_t>(most), peaks.end());
   return peaks;
@@ -95,10 +97,6 @@ inline void prefer_over_one_horizon(const scene_data& data, std::vector<scene_fi
   std::rotate(fits.begin(), brief, brief + 1);
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// Where to begin, effect by effect, and which effects are worth a fit.
 struct beginnings {
   std::vector<std::vector<scored_start>> starts;
@@ -106,16 +104,20 @@ struct beginnings {
 };
 
 /// Beginnings of effects that are sought in what is left over, by the score over the whole record.
-inline void seek_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise, beginnings& out) {
+inline void seek_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
+                            std::array<double, 2> noise, beginnings& out) {
   if (std::none_of(catalogue.begin(), catalogue.end(), [](const pluck_effect& e) { return bool(e.seek); })) return;
   auto problem = data.problem(already.effects, already.value, {}, noise);
   std::size_t strongest = 0;
   const auto strength = [&](std::size_t t) { return already.value[data.layout.at(t, pluck_layout::strength)]; };
   for (std::size_t t = 1; t < problem.takes(); ++t)
     if (strength(t) > strength(strongest)) strongest = t;
-  take_residual rest{residual_of(problem, already.value, strongest), problem.part(strongest, 1).begin_s, problem.rate_Hz(strongest), strongest, {}};
+  take_residual rest;
+  rest.residual = residual_of(problem, already.value, strongest), rest.take = strongest;
+  rest.begin_s = problem.part(strongest, 1).begin_s, rest.rate_Hz = problem.rate_Hz(strongest);
   const pluck_scene scene = problem.model().scene(already.value, static_cast<int>(strongest));
-  for (int n = 1; scene.string.partial_Hz(n) < problem.limits().stop_Hz && n < 1000; ++n) rest.own_Hz.push_back(partial_between_clamps_Hz(scene, n));
+  for (int n = 1; scene.string.partial_Hz(n) < problem.limits().stop_Hz && n < 1000; ++n)
+    rest.own_Hz.push_back(partial_between_clamps_Hz(scene, n));
   std::optional<pluck_score> test;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     pluck_effect e = catalogue[i];
@@ -123,14 +125,17 @@ inline void seek_beginnings(const scene_data& data, const scene_fit& already, co
     e.starts = e.seek(rest);
     if (e.starts.empty()) continue;
     if (!test) problem.set_noise(problem.assess(already.value).noise), test.emplace(problem, already.value);
-    out.starts[i] = best_starts(*test, scene_plucks(data.layout, data.guess.ac_coupled_Hz, with_one_more(already.effects, e)), e, 1);
+    out.starts[i] =
+        best_starts(*test, scene_plucks(data.layout, data.guess.ac_coupled_Hz, with_one_more(already.effects, e)), e, 1);
     out.foremost[i] = !out.starts[i].empty();
   }
 }
 
-inline beginnings find_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue, bool strong, std::array<double, 2> noise) {
+inline beginnings find_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
+                                  bool strong, std::array<double, 2> noise) {
   beginnings out{std::vector<std::vector<scored_start>>(catalogue.size()), std::vector<bool>(catalogue.size(), false)};
-  std::vector<fit_stage> looks = strong ? std::vector<fit_stage>{{1000, 3, true}, {1000, 8, true}, {12, 8, false}} : std::vector<fit_stage>{{}};
+  std::vector<fit_stage> looks =
+      strong ? std::vector<fit_stage>{{1000, 3, true}, {1000, 8, true}, {12, 8, false}} : std::vector<fit_stage>{{}};
   for (fit_stage& look : looks)  // no further than what is there already holds
     for (const pluck_effect& e : already.effects) look.periods = std::min(look.periods, e.horizon_periods);
   for (const fit_stage& look : looks) {
@@ -160,10 +165,11 @@ inline beginnings find_beginnings(const scene_data& data, const scene_fit& alrea
   return out;
 }
 
-/// The best of several ways to one effect. Where the model is far off: from the first partials of the first periods on, every start
-/// for two short stages and the best of them further; and all partials at once.
-inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fit& already, const pluck_effect& e, const std::vector<scored_start>& starts,
-                                          const std::vector<found_start>& found, bool strong, std::array<double, 2> noise) {
+/// The best of several ways to one effect. Where the model is far off: from the first partials of the first periods on, every
+/// start for two short stages and the best of them further; and all partials at once.
+inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fit& already, const pluck_effect& e,
+                                          const std::vector<scored_start>& starts, const std::vector<found_start>& found,
+                                          bool strong, std::array<double, 2> noise) {
   const std::vector<pluck_effect> effects = with_one_more(already.effects, e);
   std::optional<scene_fit> best;
   const auto keep = [&](scene_fit f) {
@@ -179,10 +185,12 @@ inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fi
   for (const auto& s : starts) keep(fit_scene(data, effects, from(s), {{6, 5, false}, {12, 8, false}}, noise));
   std::vector<scene_fit> further;
   if (best) further.push_back(fit_scene(data, effects, best->value, {{24, 12, false}, {1000, 12, true}}, noise));
-  const auto highest = std::max_element(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
+  const auto highest =
+      std::max_element(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
   if (highest != starts.end()) further.push_back(fit_scene(data, effects, from(*highest), {{1000, 12, true}}, noise));
   for (const found_start& f : found)
-    if (f.id == e.id()) further.push_back(fit_scene(data, effects, f.value, {{1000, 1.5, true}, {1000, 3, true}, {1000, 12, true}}, noise));
+    if (f.id == e.id())
+      further.push_back(fit_scene(data, effects, f.value, {{1000, 1.5, true}, {1000, 3, true}, {1000, 12, true}}, noise));
   best.reset();
   for (auto& f : further) keep(std::move(f));
   return best;
@@ -197,19 +205,21 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
     std::vector<fit_stage> rest;
     rest.reserve(3);
     if (strong) rest.push_back({1000, 40, true}), rest.push_back({});
-    const bool corrects = data.layout.has_ends() || std::any_of(f.effects.begin(), f.effects.end(), [](const pluck_effect& e) {
-      return std::any_of(e.parameters.begin(), e.parameters.end(), [](const effect_parameter& p) { return p.late; });
-    });
+    const bool corrects =
+        data.layout.has_ends() || std::any_of(f.effects.begin(), f.effects.end(), [](const pluck_effect& e) {
+          return std::any_of(e.parameters.begin(), e.parameters.end(), [](const effect_parameter& p) { return p.late; });
+        });
     if (corrects) rest.push_back({1000, 1e9, true, freedom::all});
     if (!rest.empty()) f = fit_scene(data, f.effects, f.value, rest, noise);
   }
 }
 
-/// An effect that leaves more than noise once more from the first periods on, in small steps: over all of the record the fit may have come to rest
-/// with partials a little off.
+/// An effect that leaves more than noise once more from the first periods on, in small steps: over all of the record the fit may
+/// have come to rest with partials a little off.
 inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<double, 2> noise) {
   std::vector<fit_stage> stages;
-  for (double periods = 1.5; periods < std::min(100.0, fit.horizon_periods); periods *= 2) stages.push_back({1000, periods, true});
+  for (double periods = 1.5; periods < std::min(100.0, fit.horizon_periods); periods *= 2)
+    stages.push_back({1000, periods, true});
   stages.push_back({1000, fit.horizon_periods, true, freedom::all});
   scene_fit again = fit_scene(data, fit.effects, fit.value, stages, noise);
   return cost_of(again, noise) < cost_of(fit, noise) ? again : fit;
@@ -217,13 +227,17 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
 
 }  // namespace detail
 
-/// Fits of the effects `already` in the model and one more, the best first. `strong`: what is there is far off; effects that no score
-/// tells of are then only tried if no other leaves mere noise.
-[[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
-                                                            bool strong, std::array<double, 2> noise) {
+/// Fits of the effects `already` in the model and one more, the best first. `strong`: what is there is far off; effects that no
+/// score tells of are then only tried if no other leaves mere noise.
+[[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already,
+                                                            const std::vector<pluck_effect>& catalogue, bool strong,
+                                                            std::array<double, 2> noise) {
   const detail::beginnings begin = detail::find_beginnings(data, already, catalogue, strong, noise);
-  const std::vector<detail::found_start> found = strong && already.effects.empty() ? detail::strong_starts(data, already, catalogue, noise) : std::vector<detail::found_start>{};
-  const auto is_found = [&](const pluck_effect& e) { return std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.id == e.id(); }); };
+  std::vector<detail::found_start> found;
+  if (strong && already.effects.empty()) found = detail::strong_starts(data, already, catalogue, noise);
+  const auto is_found = [&](const pluck_effect& e) {
+    return std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.id == e.id(); });
+  };
   std::vector<scene_fit> fits, sought;  // the latter over all of the record from the beginning
   bool complete = false;
   for (const bool scored : {true, false})
@@ -233,12 +247,13 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
           complete = complete || (strong && f->quality.inflation() == 1.0);
           (catalogue[i].seek ? sought : fits).push_back(*std::move(f));
         }
-  const auto better = [&](const scene_fit& a, const scene_fit& b) { return detail::price_of(a, noise) < detail::price_of(b, noise); };
+  const auto better = [&](const auto& a, const auto& b) { return detail::price_of(a, noise) < detail::price_of(b, noise); };
   std::sort(fits.begin(), fits.end(), better);
   detail::follow_up(data, fits, strong, noise);
   fits.insert(fits.end(), sought.begin(), sought.end());
   std::sort(fits.begin(), fits.end(), better);
-  if (!fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek) fits.front() = detail::rewound(data, std::move(fits.front()), noise);
+  if (!fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek)
+    fits.front() = detail::rewound(data, std::move(fits.front()), noise);
   detail::prefer_over_one_horizon(data, fits, noise);
   return fits;
 }
@@ -259,9 +274,10 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
 
 }  // namespace detail
 
-/// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and stays out if the evidence
-/// is higher without it; what best takes its place is kept if the evidence of the whole rises by more than `nats`.
-[[nodiscard]] inline scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats, std::array<double, 2> noise) {
+/// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and stays out if the
+/// evidence is higher without it; what best takes its place is kept if the evidence of the whole rises by more than `nats`.
+[[nodiscard]] inline scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats,
+                                         std::array<double, 2> noise) {
   std::size_t count = fit.effects.size();
   for (std::size_t tried = 0, k = 0; tried < count && count > 1; ++tried, k = (k + 1) % count) {
     scene_fit rest = detail::without(data, fit, k);
@@ -275,7 +291,8 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
     const auto fits = one_more_effect(data, rest, still_to_add(all, rest.effects), rest.quality.residual_ratio[0] > 0.05, noise);
     if (fits.empty() || fits.front().horizon_periods != fit.horizon_periods) continue;
     const double temper = std::max(1.0, fits.front().quality.inflation());
-    if (0.5 * (detail::price_of(fit, noise) - detail::price_of(fits.front(), noise)) / temper > nats) fit = fits.front(), tried = 0, k = 0;
+    if (0.5 * (detail::price_of(fit, noise) - detail::price_of(fits.front(), noise)) / temper > nats)
+      fit = fits.front(), tried = 0, k = 0;
   }
   return fit;
 }

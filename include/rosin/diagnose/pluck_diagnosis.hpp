@@ -1,14 +1,15 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// What the plucks of a rig say of physics that was left out. The declared model is fitted first; then effects are added one by one,
-// each time the one that explains most, as long as it is worth it:
+// What the plucks of a rig say of physics that was left out. The declared model is fitted first; then effects are added one by
+// one, each time the one that explains most, as long as it is worth it:
 //
 //     significance   the gain in ln L, divided by the misfit that is left (model error counts as noise), is at least 14;
 //     prediction     it gains 3 on takes that were set aside, where it does not gain very much in all;
-//     worth          a further effect (any, where terminations are declared to move: these count as found) takes away at least two thirds of what the model so far leaves beyond the noise, and that is
-//                    at least a hundredth (in amplitude) of what there was to explain: no model of a bead is exact either. Of less than that it
-//                    takes away nearly all, and gains 40.
+//     worth          a further effect (any, where terminations are declared to move: these count as found) takes away at least
+//                    two thirds of what the model so far leaves beyond the noise, and that is at least a hundredth (in
+//                    amplitude) of what there was to explain: no model of a bead is exact either. Of less than that it takes
+//                    away nearly all, and gains 40.
 //
 // Explained is what leaves on such takes no more than a quarter of the noise beyond it, or 12 % of what there was
 // and six times the noise. A mismatch needs no name: it
@@ -37,14 +38,14 @@ struct pluck_hypothesis {
 
 struct pluck_diagnosis {
   scene_data data;
-  pluck_fit_result declared;               ///< the fit of the declared model
-  scene_fit base, best;                    ///< the same over the horizon of the best; and with what was found
+  pluck_fit_result declared;  ///< the fit of the declared model
+  scene_fit base, best;       ///< the same over the horizon of the best; and with what was found
   std::vector<pluck_hypothesis> ranking;
-  std::vector<std::string> alternatives;   ///< to the last effect found: within 5 nats, cannot be told from it
-  std::vector<double> found_gain;          ///< tempered gain of ln L of each effect found
+  std::vector<std::string> alternatives;  ///< to the last effect found: within 5 nats, cannot be told from it
+  std::vector<double> found_gain;         ///< tempered gain of ln L of each effect found
   pluck_mismatch mismatch;
   bool mismatched = false, explained = true;
-  double before = 0, after = 0, floor = 0; ///< rms residual / rms recorded, on held-out takes where there are any
+  double before = 0, after = 0, floor = 0;  ///< rms residual / rms recorded, on held-out takes where there are any
   std::vector<std::string> held_out;
 };
 
@@ -63,9 +64,11 @@ inline int free_parameters(const scene_fit& f) {
 }
 
 /// The share of a mismatch's power that the best of `fits` leaves, as far as it looks.
-inline double share_left(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits, std::array<double, 2> noise) {
+inline double share_left(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits,
+                         std::array<double, 2> noise) {
   if (fits.empty()) return 1;
-  const scene_fit plain = fit_scene(data, before.effects, before.value, {{1000, fits.front().horizon_periods, true, data.compared()}}, noise);
+  const scene_fit plain =
+      fit_scene(data, before.effects, before.value, {{1000, fits.front().horizon_periods, true, data.compared()}}, noise);
   double expected = 0;
   for (const double n : fits.front().quality.samples) expected += n;
   return (cost_of(fits.front(), noise) - expected) / std::max(1e-9, cost_of(plain, noise) - expected);
@@ -74,15 +77,16 @@ inline double share_left(const scene_data& data, const scene_fit& before, const 
 /// Adds effects to the declared model one by one, as long as it is worth it.
 class effect_search {
 public:
-  effect_search(pluck_diagnosis& d, const std::vector<pluck_effect>& all)
-      : d_{d}, all_{all}, weigh_{d.declared.noise_N},
-        now_{{}, d.declared.value, d.declared.sd, d.declared.covariance, {}, {}, d.declared.horizon_periods, 0, true} {
+  effect_search(pluck_diagnosis& d, const std::vector<pluck_effect>& all) : d_{d}, all_{all}, weigh_{d.declared.noise_N} {
+    now_.value = d.declared.value, now_.sd = d.declared.sd, now_.covariance = d.declared.covariance;
+    now_.horizon_periods = d.declared.horizon_periods, now_.converged = true;
     now_.quality.residual_ratio = d.declared.residual_ratio;
     if (d.data.layout.has_ends()) correct_ends();
   }
 
   void run(int most_effects) {
-    for (int round = 0; round < most_effects && add_one(round); ++round) {}
+    int round = 0;
+    while (round < most_effects && add_one(round)) ++round;
     d_.best = exchanged(d_.data, now_, all_, 1, noise_);
     if (d_.found_gain.size() > d_.best.effects.size()) d_.found_gain.resize(d_.best.effects.size());
     if (d_.best.effects.empty()) d_.best = d_.base;
@@ -109,20 +113,23 @@ private:
     rigid.guess.ends = {};
     return cost_of(fit_scene(rigid, {}, now_.value.head(rigid.layout.size()), {{1000, periods, true}}, weigh_), noise_) - samples;
   }
-  /// Whether an effect takes away enough. Beside a strong one its own model's faults are worth something to others as well; but these leave most of
-  /// them. What a declared end is off by is no other mode of it.
+  /// Whether an effect takes away enough. Beside a strong one its own model's faults are worth something to others as well; but
+  /// these leave most of them. What a declared end is off by is no other mode of it.
   [[nodiscard]] bool is_worth(const comparison& c, const pluck_effect& e, int round) const {
     if (round == 0 && !d_.data.layout.has_ends()) return true;
     constexpr double beyond_doubt = 40;
-    const bool much = c.was > 1e-4 * all_there_was_, at_known_end = e.at_end && e.place >= 0 && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
+    const bool much = c.was > 1e-4 * all_there_was_,
+               at_known_end = e.at_end && e.place >= 0 && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
     return c.left < c.was / 3 && (much || (!at_known_end && c.left < c.was / 30 && c.gain > beyond_doubt));
   }
 
   [[nodiscard]] std::vector<scene_fit> candidates(int round) const {
     const std::vector<pluck_effect> catalogue = still_to_add(all_, now_.effects);
-    const bool strong = round == 0 ? now_.horizon_periods < 1e8 || now_.quality.residual_ratio[0] > 0.05 : now_.quality.residual_ratio[0] > 0.1;
+    const bool strong =
+        round == 0 ? now_.horizon_periods < 1e8 || now_.quality.residual_ratio[0] > 0.05 : now_.quality.residual_ratio[0] > 0.1;
     std::vector<scene_fit> fits = one_more_effect(d_.data, now_, catalogue, strong, weigh_);
-    // Over all of a record, what is small per period may have turned partials too far for a score test: once more from the first periods.
+    // Over all of a record, what is small per period may have turned partials too far for a score test: once more from the first
+    // periods.
     const double tolerated = round == 0 ? 1.5 : 9, much = 0.25;
     if (strong || fits.empty() || !(fits.front().quality.inflation() > tolerated)) return fits;
     const double left = share_left(d_.data, now_, fits, weigh_);
@@ -152,9 +159,12 @@ private:
     d_.mismatched = true;
     d_.found_gain.push_back(c.gain);
     d_.alternatives.clear();
-    const auto is_variant = [&](const scene_fit& f) { return f.effects.back().name == tried.effects.back().name && f.effects.back().place == tried.effects.back().place; };
+    const auto is_variant = [&](const scene_fit& f) {
+      return f.effects.back().name == tried.effects.back().name && f.effects.back().place == tried.effects.back().place;
+    };
     for (const scene_fit& f : fits)
-      if (!is_variant(f) && f.horizon_periods == tried.horizon_periods && 0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
+      if (!is_variant(f) && f.horizon_periods == tried.horizon_periods &&
+          0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
         d_.alternatives.push_back(f.effects.back().id());
     now_ = tried;
   }
@@ -166,10 +176,12 @@ private:
       return false;
     }
     const scene_fit& tried = fits.front();
-    const scene_fit before = fit_scene(d_.data, now_.effects, now_.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh_);
+    const scene_fit before =
+        fit_scene(d_.data, now_.effects, now_.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh_);
     for (std::size_t c = 0; c < 2; ++c) noise_[c] = std::min({noise_[c], before.quality.noise[c], tried.quality.noise[c]});
     const comparison c = compare(before, tried);
-    if (round == 0) d_.base = before, all_there_was_ = d_.data.layout.has_ends() ? done_by_ends(tried.horizon_periods, c.samples) : c.was;
+    if (round == 0)
+      d_.base = before, all_there_was_ = d_.data.layout.has_ends() ? done_by_ends(tried.horizon_periods, c.samples) : c.was;
     const bool worth = is_worth(c, tried.effects.back(), round);
     for (const scene_fit& f : fits)
       if (worth || &f == &tried) rank(f, c);
@@ -191,7 +203,8 @@ private:
 /// What is real shows in takes that were not fitted, too.
 inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<pluck_take>& held, double noise) {
   constexpr double beyond_doubt = 200, least = 3;
-  while (!held.empty() && !d.best.effects.empty() && d.found_gain[d.best.effects.size() - 1] < beyond_doubt && held_out_gain(d.data, d.best, held, noise) < least) {
+  while (!held.empty() && !d.best.effects.empty() && d.found_gain[d.best.effects.size() - 1] < beyond_doubt &&
+         held_out_gain(d.data, d.best, held, noise) < least) {
     const double horizon = d.best.horizon_periods;
     const scene_fit less = without(d.data, d.best, d.best.effects.size() - 1);
     d.best = fit_scene(d.data, less.effects, less.value, {{1000, horizon, true, freedom::all}}, {noise, noise});
@@ -201,8 +214,8 @@ inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<plu
   d.mismatched = d.mismatched && !d.best.effects.empty();
 }
 
-/// Before and after on takes that were not fitted, and whether that is an explanation. `noise_seen`: before the releases as well; much noise
-/// that nothing else bears out may be what the model leaves.
+/// Before and after on takes that were not fitted, and whether that is an explanation. `noise_seen`: before the releases as well;
+/// much noise that nothing else bears out may be what the model leaves.
 inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool noise_seen, bool modulated) {
   constexpr double much_noise = 0.05;
   const double most_left = d.best.effects.size() > 1 ? 2 : 6;  // of the floor: who may take several names has to leave less
@@ -217,9 +230,11 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   const auto beyond_noise = [&](double x) { return std::sqrt(std::max(0.0, x * x - d.floor * d.floor)); };
   const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
   const bool doubtful = !noise_seen && d.floor > much_noise;
-  const bool complete = !doubtful && ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
+  const bool complete =
+      !doubtful && ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
   const bool known_ends = d.data.layout.has_ends();  // never known to the last digit
-  d.mismatched = d.mismatched || (left > 1.5 && !(known_ends && was <= 0.25 * d.floor)) || modulated || doubtful || was > 0.6 * d.floor;
+  d.mismatched =
+      d.mismatched || (left > 1.5 && !(known_ends && was <= 0.25 * d.floor)) || modulated || doubtful || was > 0.6 * d.floor;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   if (d.explained || excess <= 0.5 * was) return;
   d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it
@@ -228,7 +243,8 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
 }
 
 /// The declared model by itself: a string between ends that are rigid, or that move as is known.
-[[nodiscard]] inline outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {
+[[nodiscard]] inline outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess,
+                                                            const pluck_options& options) {
   constexpr double most_residual = 0.95;  // a heavy bead leaves little of the declared string
   if (!guess.has_ends()) return fit_plucks(takes, guess, options, most_residual);
   auto fit = fit_ends(takes, guess, options, {.free_ends = {false, false}, .most_residual = most_residual});
@@ -239,15 +255,17 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
 }  // namespace detail
 
 /// `catalogue_for`: effects that the declared model does not contain. Takes in `held` are predicted only.
-[[nodiscard]] inline outcome<pluck_diagnosis> diagnose_plucks(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
-                                                              const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
-                                                              int most_effects = 3) {
+[[nodiscard]] inline outcome<pluck_diagnosis> diagnose_plucks(
+    const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
+    const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
+    int most_effects = 3) {
   auto declared = detail::fit_declared(takes, guess, options);
   if (!declared) return failure{declared.error()};
   const pluck_layout layout(takes, options, guess.ends);
   pluck_diagnosis d{{takes, guess, options, layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
   d.declared.layout = layout;
-  d.declared.value.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size())), d.declared.sd.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size()));
+  d.declared.value.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size())),
+      d.declared.sd.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size()));
   d.declared.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(layout.size(), layout.size()));
   const std::vector<pluck_effect> all = catalogue_for(*declared);
   detail::effect_search search(d, all);
@@ -263,10 +281,12 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
 }
 
 /// The catalogue without what the declared model already contains.
-[[nodiscard]] inline std::vector<pluck_effect> catalogue_without(const std::vector<std::string>& physics, const string_facts& facts, const band& limits) {
+[[nodiscard]] inline std::vector<pluck_effect> catalogue_without(const std::vector<std::string>& physics,
+                                                                 const string_facts& facts, const band& limits) {
   std::vector<pluck_effect> all = pluck_effects(facts);
   for (const int channel : {0, 1})
-    for (const bending where : {bending::behind_ringing, bending::before_ringing}) all.push_back(sensor_nonlinearity_effect(facts, channel, where));
+    for (const bending where : {bending::behind_ringing, bending::before_ringing})
+      all.push_back(sensor_nonlinearity_effect(facts, channel, where));
   all.push_back(clock_drift_effect(facts));
   for (const int end : {0, 1}) all.push_back(sympathetic_string_effect(facts, end));
   if (facts.impedance_Ns_m > 0 && facts.length_m > 0) {

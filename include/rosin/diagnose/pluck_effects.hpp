@@ -32,26 +32,34 @@ inline double unit_of(const string_facts& s) { return s.impedance_Ns_m > 0 ? s.i
 
 /// B: only where the model lacks it; the string's own inharmonicity b = pi^2 B / (T L^2) is freed.
 inline pluck_effect bending_stiffness_effect(const string_facts&) {
-  return {"bending-stiffness", -1, false, {{"inharmonicity", -1e-6, 0.01, 1e-8}}, {{1e-6}}, 0,
-          [](pluck_scene& s, const double* v, int) { s.string.inharmonicity += v[0]; }};
+  return {.name = "bending-stiffness",
+          .parameters = {{"inharmonicity", -1e-6, 0.01, 1e-8}},
+          .starts = {{1e-6}},
+          .apply = [](pluck_scene& s, const double* v, int) { s.string.inharmonicity += v[0]; }};
 }
 
 /// 1/Q = 1/Q0 + loss f.
 inline pluck_effect internal_loss_effect(const string_facts&) {
-  return {"frequency-dependent-loss", -1, false, {{"loss_internal_s", -1e-8, 3e-5, 1e-11}}, {{1e-8}}, 0,
-          [](pluck_scene& s, const double* v, int) { s.string.loss.internal_s += v[0]; }};
+  return {.name = "frequency-dependent-loss",
+          .parameters = {{"loss_internal_s", -1e-8, 3e-5, 1e-11}},
+          .starts = {{1e-8}},
+          .apply = [](pluck_scene& s, const double* v, int) { s.string.loss.internal_s += v[0]; }};
 }
 
 /// 1/Q = 1/Q0 + loss / sqrt(f), the boundary layer's part.
 inline pluck_effect air_loss_effect(const string_facts&) {
-  return {"air-loss", -1, false, {{"loss_air_sqrt_Hz", -1e-3, 1, 1e-6}}, {{1e-3}}, 0,
-          [](pluck_scene& s, const double* v, int) { s.string.loss.air_sqrt_Hz += v[0]; }};
+  return {.name = "air-loss",
+          .parameters = {{"loss_air_sqrt_Hz", -1e-3, 1, 1e-6}},
+          .starts = {{1e-3}},
+          .apply = [](pluck_scene& s, const double* v, int) { s.string.loss.air_sqrt_Hz += v[0]; }};
 }
 
 /// A second plane of vibration.
 inline pluck_effect polarisation_effect(const string_facts&) {
-  pluck_effect e{"second-polarization", -1, false, {{"detuning", -0.03, 0.03, 1e-7}, {"coupling", -0.9, 0.9, 1e-5}}, {}, 1,
-                 [](pluck_scene& s, const double* v, int) { s.detuning = v[0], s.coupling = v[1]; }};
+  pluck_effect e{.name = "second-polarization",
+                 .parameters = {{"detuning", -0.03, 0.03, 1e-7}, {"coupling", -0.9, 0.9, 1e-5}},
+                 .strength = 1,
+                 .apply = [](pluck_scene& s, const double* v, int) { s.detuning = v[0], s.coupling = v[1]; }};
   for (const double d : detail::geometric(1e-4, 0.021, 1.15))
     for (const double sign : {-1.0, 1.0}) e.starts.push_back({sign * d, 1e-3});
   return e;
@@ -60,8 +68,13 @@ inline pluck_effect polarisation_effect(const string_facts&) {
 /// A bead, a winding's end.
 inline pluck_effect point_mass_effect(const string_facts& f) {
   const double Z = detail::unit_of(f), bond = detail::most_bond_s(f);
-  pluck_effect e{"point-mass", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"mass_kg", 0, 1e-2 * Z, 1e-9 * Z}, {"bond_s", -bond, bond, 1e-9, false, -1, false, true}, {"loaded_loss", -1, 2, 1e-3, false, -1, false, true}}, {}, 1,
-                 [Z](pluck_scene& s, const double* v, int) {
+  pluck_effect e{.name = "point-mass",
+                 .parameters = {{"position", 0.003, 0.997, 1e-6},
+                                {"mass_kg", 0, 1e-2 * Z, 1e-9 * Z},
+                                correction("bond_s", -bond, bond, 1e-9),
+                                correction("loaded_loss", -1, 2, 1e-3)},
+                 .strength = 1,
+                 .apply = [Z](pluck_scene& s, const double* v, int) {
                    s.scatterers.push_back({v[0], v[1] / Z, 0, 0, v[2]});
                    s.loaded_loss = std::clamp(s.loaded_loss + v[3], -1.0, 2.0);
                  }};
@@ -72,8 +85,14 @@ inline pluck_effect point_mass_effect(const string_facts& f) {
 /// A finger, felt.
 inline pluck_effect point_damper_effect(const string_facts& f) {
   const double Z = detail::unit_of(f), lag = detail::most_lag_s;
-  pluck_effect e{"point-damper", -1, false, {{"position", 0.003, 0.997, 1e-6}, {"resistance_Ns_m", 0, 50 * Z, 1e-6 * Z}, {"lag_s", -lag, lag, 1e-9, false, -1, false, true}}, {}, 1,
-                 [Z](pluck_scene& s, const double* v, int) { s.scatterers.push_back({v[0], 0, v[1] / Z, 0, 0, v[2]}); }};
+  pluck_effect e{.name = "point-damper",
+                 .parameters = {{"position", 0.003, 0.997, 1e-6},
+                                {"resistance_Ns_m", 0, 50 * Z, 1e-6 * Z},
+                                correction("lag_s", -lag, lag, 1e-9)},
+                 .strength = 1,
+                 .apply = [Z](pluck_scene& s, const double* v, int) {
+                   s.scatterers.push_back({v[0], 0, v[1] / Z, 0, 0, v[2]});
+                 }};
   for (int i = 1; i < 64; ++i) e.starts.push_back({i / 64.0, 1e-5 * Z, 0});
   return e;
 }
@@ -82,25 +101,39 @@ inline pluck_effect point_damper_effect(const string_facts& f) {
 /// that of mass and spring, 1/Y = R + (M s + K / s) exp(s lag) = exp(s lag) ((M - R lag) s + R + K / s) to first order.
 inline pluck_effect support_resonance_effect(const string_facts& f, int end) {
   const double Z = detail::unit_of(f), lag = detail::most_lag_s;
-  pluck_effect e{"support-resonance", end, true,
-                 {{"frequency_Hz", 20, f.highest_Hz, 1e-6, true}, {"q", 0.6, 3000, 1e-5, true}, {"per_mass_per_kg", 0, 1e5 / Z, 1e-4 / Z}, {"lag_s", -lag, lag, 1e-9, false, -1, false, true}}, {}, 2,
-                 [Z, end](pluck_scene& s, const double* v, int) {
-                   const double share = std::max(0.5, 1 - 2 * std::numbers::pi * v[0] * v[3] / v[1]);  // of the mass; the rest is what the resistance lags
-                   s.ends[static_cast<std::size_t>(end)].modes.push_back({v[0] / std::sqrt(share), v[1] * std::sqrt(share), v[2] * Z / share});
+  pluck_effect e{.name = "support-resonance",
+                 .place = end,
+                 .at_end = true,
+                 .parameters = {{"frequency_Hz", 20, f.highest_Hz, 1e-6, true},
+                                {"q", 0.6, 3000, 1e-5, true},
+                                {"per_mass_per_kg", 0, 1e5 / Z, 1e-4 / Z},
+                                correction("lag_s", -lag, lag, 1e-9)},
+                 .strength = 2,
+                 .apply = [Z, end](pluck_scene& s, const double* v, int) {
+                   const double share = std::max(
+                       0.5, 1 - 2 * std::numbers::pi * v[0] * v[3] / v[1]);  // of the mass; the rest is what the resistance lags
+                   s.ends[static_cast<std::size_t>(end)].modes.push_back(
+                       {v[0] / std::sqrt(share), v[1] * std::sqrt(share), v[2] * Z / share});
                    s.ends[static_cast<std::size_t>(end)].lag_s += v[3];
                  }};
   for (const double q : {6.0, 25.0, 100.0})
-    for (const double x : detail::geometric(std::min(100.0, 0.3 * f.fundamental_Hz), 0.8 * f.highest_Hz, 1 + 0.7 / q)) e.starts.push_back({x, q, 1e-2 / Z, 0});
+    for (const double x : detail::geometric(std::min(100.0, 0.3 * f.fundamental_Hz), 0.8 * f.highest_Hz, 1 + 0.7 / q))
+      e.starts.push_back({x, q, 1e-2 / Z, 0});
   return e;
 }
 
-/// An end that takes energy at all frequencies alike: a damper, and beside it the spring without which nothing would hold the string under the wire
-/// (K / R is 2 pi corner).
+/// An end that takes energy at all frequencies alike: a damper, and beside it the spring without which nothing would hold the
+/// string under the wire (K / R is 2 pi corner).
 inline pluck_effect resistive_end_effect(const string_facts& f, int end) {
   const double Z = detail::unit_of(f), lag = detail::most_lag_s;
-  pluck_effect e{"resistive-end", end, true,
-                 {{"conductance_m_sN", 1e-7 / Z, 0.5 / Z, 1e-5, true}, {"corner_Hz", 1e-3 * f.fundamental_Hz, 0.5 * f.fundamental_Hz, 1e-4, true}, {"lag_s", -lag, lag, 1e-9, false, -1, false, true}}, {}, -1,
-                 [Z, end](pluck_scene& s, const double* v, int) {
+  pluck_effect e{.name = "resistive-end",
+                 .place = end,
+                 .at_end = true,
+                 .parameters = {{"conductance_m_sN", 1e-7 / Z, 0.5 / Z, 1e-5, true},
+                                {"corner_Hz", 1e-3 * f.fundamental_Hz, 0.5 * f.fundamental_Hz, 1e-4, true},
+                                correction("lag_s", -lag, lag, 1e-9)},
+                 .strength = -1,
+                 .apply = [Z, end](pluck_scene& s, const double* v, int) {
                    yielding_end& there = s.ends[static_cast<std::size_t>(end)];
                    there.modes.push_back(overdamped_mode(v[0] * Z, v[1]));
                    there.lag_s += v[2];
@@ -114,20 +147,33 @@ inline pluck_effect resistive_end_effect(const string_facts& f, int end) {
 /// An end that is a mass without a spring.
 inline pluck_effect massive_end_effect(const string_facts& f, int end) {
   const double Z = detail::unit_of(f);
-  return {"massive-end", end, true, {{"per_mass_per_kg", 0, 1e4 / Z, 1e-4 / Z}}, {{1e-2 / Z}}, 0,
-          [Z, end](pluck_scene& s, const double* v, int) { s.ends[static_cast<std::size_t>(end)].per_free_mass_per_s += v[0] * Z; }};
+  return {.name = "massive-end",
+          .place = end,
+          .at_end = true,
+          .parameters = {{"per_mass_per_kg", 0, 1e4 / Z, 1e-4 / Z}},
+          .starts = {{1e-2 / Z}},
+          .apply = [Z, end](pluck_scene& s, const double* v, int) {
+            s.ends[static_cast<std::size_t>(end)].per_free_mass_per_s += v[0] * Z;
+          }};
 }
 
-/// An end that holds the string against turning (a knife's edge does not, a vice does), or both alike (`end` -1). For slow motion the string is but
-/// shorter, for less slow motion less stiff, since with d = sqrt(B / T), c for the clamping and q for the wave number
+/// An end that holds the string against turning (a knife's edge does not, a vice does), or both alike (`end` -1). For slow motion
+/// the string is but shorter, for less slow motion less stiff, since with d = sqrt(B / T), c for the clamping and q for the wave
+/// number
 ///
 ///     phase ahead = c (q d) - (2 c - 3/2 c^2 + 1/3 c^3) (q d)^3 + ...
 ///
 /// so that pitch, stiffness and place go along.
 inline pluck_effect clamped_end_effect(const string_facts&, int end) {
-  pluck_effect e{"clamped-end", end, true, {{"clamping", 0, 1, 1e-6}}, {{0.2}, {0.45}, {0.7}, {1.0}}, 0, [end](pluck_scene& s, const double* v, int) {
+  pluck_effect e{.name = "clamped-end",
+                 .place = end,
+                 .at_end = true,
+                 .parameters = {{"clamping", 0, 1, 1e-6}},
+                 .starts = {{0.2}, {0.45}, {0.7}, {1.0}},
+                 .apply = [end](pluck_scene& s, const double* v, int) {
                    for (int side = 0; side < 2 && s.string.inharmonicity > 0; ++side)
-                     if (double& clamping = s.ends[static_cast<std::size_t>(side)].clamping; end < 0 || side == end) clamping = std::min(1.0, clamping + v[0]);
+                     if (double& clamping = s.ends[static_cast<std::size_t>(side)].clamping; end < 0 || side == end)
+                       clamping = std::min(1.0, clamping + v[0]);
                  }};
   e.rebase = [end](const pluck_layout& layout, Eigen::VectorXd& v) {
     const double c = v[v.size() - 1], reach = shortened_by(layout.string(v), 1), ends = end < 0 ? 2 : 1;  // of the old length
@@ -145,21 +191,29 @@ inline pluck_effect clamped_end_effect(const string_facts&, int end) {
 
 /// Both channels pass a first-order high-pass. What the held string gave was taken for part of the offset.
 inline pluck_effect ac_coupling_effect(const string_facts&) {
-  pluck_effect e{"ac-coupling", -1, false, {{"cutoff_Hz", 0.005, 200, 1e-5, true}}, {{0.1}, {0.5}, {2}, {8}, {25}, {70}}, -1,
-                 [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
+  pluck_effect e{.name = "ac-coupling",
+                 .parameters = {{"cutoff_Hz", 0.005, 200, 1e-5, true}},
+                 .starts = {{0.1}, {0.5}, {2}, {8}, {25}, {70}},
+                 .strength = -1,
+                 .apply = [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
   e.shrinks_with = 0;
   e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
     for (std::size_t t = 0; t < layout.takes(); ++t)
       for (std::size_t c = 0; c < 2; ++c)
-        v[layout.at(t, pluck_layout::offset_near + static_cast<int>(c))] += std::exp(v[layout.at(t, pluck_layout::strength)]) * pluck_layout::gain(v, c) * static_forces(v[layout.position(t)])[c];
+        v[layout.at(t, pluck_layout::offset_near + static_cast<int>(c))] += std::exp(v[layout.at(t, pluck_layout::strength)]) *
+                                                                            pluck_layout::gain(v, c) *
+                                                                            static_forces(v[layout.position(t)])[c];
   };
   return e;
 }
 
 /// The transducer's own resonance.
 inline pluck_effect sensor_resonance_effect(const string_facts& f, int channel) {
-  pluck_effect e{"sensor-resonance", channel, false, {{"frequency_Hz", 300, 1.5 * f.rate_Hz, 1e-6, true}, {"q", 0.55, 500, 1e-5, true}}, {}, -1,
-                 [channel](pluck_scene& s, const double* v, int) {
+  pluck_effect e{.name = "sensor-resonance",
+                 .place = channel,
+                 .parameters = {{"frequency_Hz", 300, 1.5 * f.rate_Hz, 1e-6, true}, {"q", 0.55, 500, 1e-5, true}},
+                 .strength = -1,
+                 .apply = [channel](pluck_scene& s, const double* v, int) {
                    s.sensors[static_cast<std::size_t>(channel)].resonance_Hz = v[0];
                    s.sensors[static_cast<std::size_t>(channel)].q = v[1];
                  }};
@@ -170,7 +224,10 @@ inline pluck_effect sensor_resonance_effect(const string_facts& f, int channel) 
 
 /// The far channel comes late.
 inline pluck_effect skew_effect(const string_facts&) {
-  return {"channel-skew", -1, false, {{"skew_s", -2e-3, 2e-3, 1e-11}}, {{1e-9}}, 0, [](pluck_scene& s, const double* v, int) {
+  return {.name = "channel-skew",
+          .parameters = {{"skew_s", -2e-3, 2e-3, 1e-11}},
+          .starts = {{1e-9}},
+          .apply = [](pluck_scene& s, const double* v, int) {
             s.sensors[0].delay_s -= v[0] / 2;
             s.sensors[1].delay_s += v[0] / 2;
           }};
@@ -178,14 +235,19 @@ inline pluck_effect skew_effect(const string_facts&) {
 
 /// A part of each channel in the other.
 inline pluck_effect crosstalk_effect(const string_facts&) {
-  return {"channel-crosstalk", -1, false, {{"fraction", -0.5, 0.5, 1e-7}}, {{1e-5}}, 0,
-          [](pluck_scene& s, const double* v, int) { s.crosstalk = v[0]; }};
+  return {.name = "channel-crosstalk",
+          .parameters = {{"fraction", -0.5, 0.5, 1e-7}},
+          .starts = {{1e-5}},
+          .apply = [](pluck_scene& s, const double* v, int) { s.crosstalk = v[0]; }};
 }
 
 /// The wire lets go over a time. What was taken for the instant of release is its middle.
 inline pluck_effect slow_release_effect(const string_facts&) {
-  pluck_effect e{"slow-release", -1, false, {{"duration_s", 2e-7, 1e-3, 1e-5, true}}, {{3e-6}, {1e-5}, {1.8e-5}, {3e-5}, {6e-5}, {1.2e-4}}, -1,
-                 [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
+  pluck_effect e{.name = "slow-release",
+                 .parameters = {{"duration_s", 2e-7, 1e-3, 1e-5, true}},
+                 .starts = {{3e-6}, {1e-5}, {1.8e-5}, {3e-5}, {6e-5}, {1.2e-4}},
+                 .strength = -1,
+                 .apply = [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
   e.shrinks_with = 0;
   e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
     for (std::size_t t = 0; t < layout.takes(); ++t) v[layout.at(t, pluck_layout::release)] -= std::exp(v[v.size() - 1]) / 2;
@@ -196,17 +258,21 @@ inline pluck_effect slow_release_effect(const string_facts&) {
 /// The wire grips the string over a width.
 inline pluck_effect pluck_width_effect(const string_facts& f) {
   const double L = f.length_m > 0 ? f.length_m : 1.0;
-  pluck_effect e{"finite-pluck-width", -1, false, {{"width_m", 1e-5 * L, 0.1 * L, 1e-5, true}}, {{3e-3 * L}, {1e-2 * L}, {3e-2 * L}}, -1,
-                 [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
+  pluck_effect e{.name = "finite-pluck-width",
+                 .parameters = {{"width_m", 1e-5 * L, 0.1 * L, 1e-5, true}},
+                 .starts = {{3e-3 * L}, {1e-2 * L}, {3e-2 * L}},
+                 .strength = -1,
+                 .apply = [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
   e.shrinks_with = 0;
   return e;
 }
 
 /// All of them, in the order of the format. `physics`: names that the declared model already contains.
 [[nodiscard]] inline std::vector<pluck_effect> pluck_effects(const string_facts& f) {
-  std::vector<pluck_effect> all{bending_stiffness_effect(f), internal_loss_effect(f), air_loss_effect(f), polarisation_effect(f),
-                                point_mass_effect(f), point_damper_effect(f), ac_coupling_effect(f), skew_effect(f), crosstalk_effect(f),
-                                slow_release_effect(f), pluck_width_effect(f), hum_effect(f, 50), hum_effect(f, 60)};
+  std::vector<pluck_effect> all{
+      bending_stiffness_effect(f), internal_loss_effect(f), air_loss_effect(f), polarisation_effect(f), point_mass_effect(f),
+      point_damper_effect(f),      ac_coupling_effect(f),   skew_effect(f),     crosstalk_effect(f),    slow_release_effect(f),
+      pluck_width_effect(f),       hum_effect(f, 50),       hum_effect(f, 60)};
   for (const int place : {0, 1}) {
     all.push_back(support_resonance_effect(f, place));
     all.push_back(resistive_end_effect(f, place));

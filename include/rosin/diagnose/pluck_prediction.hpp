@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// What a fit of plucks leaves: where it shows, how well takes that were not fitted are predicted (of them only the instant of release
-// and the strength are free), and whether what rings is noisier than what was held.
+// What a fit of plucks leaves: where it shows, how well takes that were not fitted are predicted (of them only the instant of
+// release and the strength are free), and whether what rings is noisier than what was held.
 //
 #pragma once
 
@@ -21,7 +21,8 @@ struct pluck_mismatch {
 
 namespace detail {
 
-/// Narrowest band around the strongest bin that holds four fifths of a residual's power, by a plain periodogram of at most 4096 samples.
+/// Narrowest band around the strongest bin that holds four fifths of a residual's power, by a plain periodogram of at most 4096
+/// samples.
 inline std::array<double, 2> band_of(const Eigen::VectorXd& r, double rate_Hz) {
   const auto n = static_cast<int>(std::min<Eigen::Index>(r.size(), 4096));
   const int bins = std::min(n / 2, 400);
@@ -80,7 +81,8 @@ struct seen_take {
 };
 
 /// By its first `most_periods`; nothing where no release is found.
-inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit, const pluck_take& held, double most_periods = 1e9) {
+inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit, const pluck_take& held,
+                                    double most_periods = 1e9) {
   seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options, data.guess.ends)}, {}, {}};
   const auto start = find_start(out.data.takes, data.guess);
   if (!start) return std::nullopt;
@@ -95,7 +97,8 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
   v[out.data.layout.at(0, pluck_layout::strength)] = std::log(held.strength_N);
   v[out.data.layout.at(0, pluck_layout::offset_near)] = from(pluck_layout::offset_near);
   v[out.data.layout.at(0, pluck_layout::offset_far)] = from(pluck_layout::offset_far);
-  v.tail(out.data.layout.size() - out.data.layout.first_of_ends()) = fit.value.segment(data.layout.first_of_ends(), data.layout.size() - data.layout.first_of_ends());
+  v.tail(out.data.layout.size() - out.data.layout.first_of_ends()) =
+      fit.value.segment(data.layout.first_of_ends(), data.layout.size() - data.layout.first_of_ends());
   std::vector<pluck_effect> effects;
   Eigen::Index at = data.layout.size();
   double horizon = std::min(most_periods, fit.horizon_periods);
@@ -111,7 +114,11 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
     effects.push_back(std::move(mine));
   }
   out.stage = {1000, horizon, true, freedom::release_only};
-  out.fit = fit_scene(out.data, effects, v, {{12, std::min(8.0, horizon), false, freedom::release_only}, {1000, std::min(12.0, horizon), true, freedom::release_only}, out.stage}, {1e-3, 1e-3});
+  out.fit = fit_scene(out.data, effects, v,
+                      {{12, std::min(8.0, horizon), false, freedom::release_only},
+                       {1000, std::min(12.0, horizon), true, freedom::release_only},
+                       out.stage},
+                      {1e-3, 1e-3});
   return out;
 }
 
@@ -158,8 +165,8 @@ inline seen_noise noise_before_release(const scene_data& data, const scene_fit& 
   return out;
 }
 
-/// What modulates partials - a clock that is not steady, bursts - passes for noise among the lines, but not before the release. By three
-/// tenths, and four standard deviations of what was seen there.
+/// What modulates partials - a clock that is not steady, bursts - passes for noise among the lines, but not before the release.
+/// By three tenths, and four standard deviations of what was seen there.
 [[nodiscard]] inline bool is_noisier(const std::array<double, 2>& ringing, const seen_noise& still) {
   if (!(still.samples > 0)) return false;
   const double much = std::max(1.3, 1 + 4 / std::sqrt(2 * still.samples));

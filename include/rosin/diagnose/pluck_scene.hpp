@@ -19,9 +19,10 @@
 
 namespace rosin {
 
-/// Something on the string: impedance Z_s / Z = mass_s s + resistance + spring_per_s / s, held by a small compliance: nothing is a
-/// point, and what yields between string and load (extent, bond) is to first order a spring in series. May be slightly negative.
-/// The answer may come late, or early: a damper with a little mass is R (1 + s M / R), to first order one that answers M / R early.
+/// Something on the string: impedance Z_s / Z = mass_s s + resistance + spring_per_s / s, held by a small compliance: nothing is
+/// a point, and what yields between string and load (extent, bond) is to first order a spring in series. May be slightly
+/// negative. The answer may come late, or early: a damper with a little mass is R (1 + s M / R), to first order one that answers
+/// M / R early.
 struct scatterer {
   double position = 0.5;    ///< fraction of the length from the near end
   double mass_s = 0;        ///< M / Z
@@ -42,9 +43,10 @@ struct scatterer {
 /// of the modes beyond: -lag / M, a part of Y in phase with the force.
 struct yielding_end {
   std::vector<admittance_mode> modes;
-  double per_free_mass_per_s = 0; ///< Z / M of an end that is nothing but a mass
-  double lag_s = 0;               ///< of the motion behind the force; may be slightly negative
-  double clamping = 0;            ///< against turning, k / (k + sqrt(B T)) with the end's k in N m; 0: pinned, 1: clamped. A stiff string only
+  double per_free_mass_per_s = 0;  ///< Z / M of an end that is nothing but a mass
+  double lag_s = 0;                ///< of the motion behind the force; may be slightly negative
+  /// against turning, k / (k + sqrt(B T)) with the end's k in N m; 0: pinned, 1: clamped. A stiff string only
+  double clamping = 0;
 
   [[nodiscard]] bool rigid() const { return modes.empty() && per_free_mass_per_s == 0; }
   [[nodiscard]] std::complex<double> admittance(std::complex<double> s) const {
@@ -82,37 +84,42 @@ struct hum_phasor {
 struct pluck_scene {
   ringing_string string;
   std::vector<scatterer> scatterers;
-  double loaded_loss = 0;             ///< 0: every mode of the bare string loses by itself; 1: every mode of the string with what sits on it
+  double loaded_loss = 0;  ///< 0: every mode of the bare string loses by itself; 1: every mode of the string with what sits on it
   std::array<yielding_end, 2> ends;
   double release_duration_s = 0;      ///< F(t) = F0 (1 + cos(pi t / d)) / 2
   double width = 0;                   ///< of the wire's grip, fraction of the length
   double detuning = 0, coupling = 0;  ///< second polarisation: (f_z - f_y) / f_y; tan tan of the two angles
   std::array<sensor_response, 2> sensors;
-  double crosstalk = 0;               ///< of each channel in the other
+  double crosstalk = 0;  ///< of each channel in the other
   std::vector<hum_phasor> hum;
 
-  [[nodiscard]] bool plain_string() const { return scatterers.empty() && ends[0].rigid() && ends[1].rigid() && ends[0].clamping == 0 && ends[1].clamping == 0; }
+  [[nodiscard]] bool plain_string() const {
+    return scatterers.empty() && ends[0].rigid() && ends[1].rigid() && ends[0].clamping == 0 && ends[1].clamping == 0;
+  }
 };
 
-/// The phase by which a wave is ahead at an end that resists turning, tan a = q sqrt(1/epsilon) clamping / ((1 - clamping) (q^2 + kc^2) +
-/// clamping kc sqrt(1/epsilon)); q and kc per second of travel, kc^2 = q^2 + 1/epsilon.
+/// The phase by which a wave is ahead at an end that resists turning, tan a = q sqrt(1/epsilon) clamping / ((1 - clamping) (q^2 +
+/// kc^2) + clamping kc sqrt(1/epsilon)); q and kc per second of travel, kc^2 = q^2 + 1/epsilon.
 [[nodiscard]] inline double phase_ahead(double q, double epsilon, double clamping) {
   if (clamping == 0) return 0;
   const double kappa = std::sqrt(q * q + 1 / epsilon), still = std::sqrt(1 / epsilon);
   return std::atan2(clamping * still * q, (1 - clamping) * (q * q + kappa * kappa) + clamping * kappa * still);
 }
 
-/// What an end that does not turn freely takes from the string's length for slow motion, a fraction of it: clamping sqrt(B / T) / L.
+/// What an end that does not turn freely takes from the string's length for slow motion, a fraction of it: clamping sqrt(B / T) /
+/// L.
 [[nodiscard]] inline double shortened_by(const ringing_string& string, double clamping) {
   return clamping * std::sqrt(std::max(0.0, string.stiffness_s2())) * 2 * string.fundamental_Hz;
 }
 
-/// The string between pinned ends that comes nearest to one whose ends resist turning, up to the third power of the frequency, and places on it.
+/// The string between pinned ends that comes nearest to one whose ends resist turning, up to the third power of the frequency,
+/// and places on it.
 struct nearest_pinned {
   ringing_string string;
   double begin = 0, whole = 1;  ///< in lengths of the other
 
-  nearest_pinned(const pluck_scene& scene, const ringing_string& held) : string{held}, begin{shortened_by(held, scene.ends[0].clamping)} {
+  nearest_pinned(const pluck_scene& scene, const ringing_string& held)
+      : string{held}, begin{shortened_by(held, scene.ends[0].clamping)} {
     const double reach = shortened_by(held, 1);
     double softer = 0;
     for (const yielding_end& end : scene.ends) {
@@ -125,8 +132,8 @@ struct nearest_pinned {
   [[nodiscard]] double place(double position) const { return (position - begin) / whole; }
 };
 
-/// Forces on the ends while the wire holds the string with 1 N, near and far. Modes that yield are so much more string; what moves as a mere mass is
-/// taken to be held.
+/// Forces on the ends while the wire holds the string with 1 N, near and far. Modes that yield are so much more string; what
+/// moves as a mere mass is taken to be held.
 [[nodiscard]] inline std::array<double, 2> held_forces(const pluck_scene& scene, double position) {
   std::array<double, 2> longer{};  // by fractions of the length
   for (std::size_t e = 0; e < 2; ++e) {

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Score test of a fit of plucks: by how much would one more effect raise the likelihood, to first order, everything else readjusted?
-// With the residual r, the Jacobian J of what is fitted already and the change d that the effect makes,
+// Score test of a fit of plucks: by how much would one more effect raise the likelihood, to first order, everything else
+// readjusted? With the residual r, the Jacobian J of what is fitted already and the change d that the effect makes,
 //
 //     mix = (d'r - d'J H^-1 J'r) / (d'd - d'J H^-1 J'd),      gain of ln L = mix^2 (...) / 2
 //
@@ -53,8 +53,8 @@ public:
     return {excess / free, 0.5 * excess * excess / free};
   }
 
-  /// The same for a change of the recordings themselves: `columns` holds, take by take, what the filtered recording after the release
-  /// loses for one unit of it. Returns mix, gain and the standard deviation of mix.
+  /// The same for a change of the recordings themselves: `columns` holds, take by take, what the filtered recording after the
+  /// release loses for one unit of it. Returns mix, gain and the standard deviation of mix.
   struct column_score : score_result {
     double sd = 0;
   };
@@ -78,10 +78,10 @@ public:
 private:
   struct view {  // of the ringing part of a take
     std::vector<damped_line> lines;
-    std::vector<line_steps> steps;             // of these lines
-    Eigen::MatrixXd gram;                      // 4N x 4N
+    std::vector<line_steps> steps;  // of these lines
+    Eigen::MatrixXd gram;           // 4N x 4N
     std::array<Eigen::VectorXd, 2> residual, onto;
-    std::array<Eigen::MatrixXd, 2> to;         // P x 4N
+    std::array<Eigen::MatrixXd, 2> to;  // P x 4N
   };
 
   [[nodiscard]] view view_of(std::size_t t) const {
@@ -124,8 +124,10 @@ private:
     return line_runner(lines, step_s).products(x).front().transpose().reshaped();
   }
 
-  void add(const view& w, const std::vector<damped_line>& changed, std::size_t take, double& dr, double& dd, Eigen::VectorXd& dJ) const {
-    const double step_s = 1 / problem_.rate_Hz(take), near = 0.05 * 2 * std::numbers::pi * problem_.model().string(value_).fundamental_Hz;
+  void add(const view& w, const std::vector<damped_line>& changed, std::size_t take, double& dr, double& dd,
+           Eigen::VectorXd& dJ) const {
+    const double step_s = 1 / problem_.rate_Hz(take),
+                 near = 0.05 * 2 * std::numbers::pi * problem_.model().string(value_).fundamental_Hz;
     const auto N = static_cast<Eigen::Index>(w.lines.size());
     Eigen::MatrixX2d d = Eigen::MatrixX2d::Zero(4 * N, 2);
     std::vector<bool> met(w.lines.size(), false);
@@ -138,15 +140,18 @@ private:
         const std::size_t j = (from + k) % w.lines.size();
         if (met[j] || std::abs(w.lines[j].pole.imag() - line.pole.imag()) > apart) continue;
         const double dist = plain::abs(w.lines[j].pole - line.pole);
-        if (line.pole.imag() == 0 && dist > 0) continue;  // what is slow may die away within the record: exactly, then, as a line of its own
+        if (line.pole.imag() == 0 && dist > 0)
+          continue;  // what is slow may die away within the record: exactly, then, as a line of its own
         const bool same_channel = (line.residue[0] != 0.0) == (w.lines[j].residue[0] != 0.0) || dist > 0 || line.pole.imag() != 0;
         if (dist < apart && same_channel) apart = dist, best = j;
         if (dist < 1e-3 * near && same_channel) break;
       }
       const auto is_closer = [&](const damped_line& other) {
-        return &other != &line && std::abs(other.pole.imag() - w.lines[best].pole.imag()) < apart && std::abs(other.pole - w.lines[best].pole) < apart;
+        return &other != &line && std::abs(other.pole.imag() - w.lines[best].pole.imag()) < apart &&
+               std::abs(other.pole - w.lines[best].pole) < apart;
       };
-      if (apart > 1e-3 * near && best < w.lines.size() && std::any_of(changed.begin(), changed.end(), is_closer)) best = w.lines.size();  // a new line beside an old one
+      if (apart > 1e-3 * near && best < w.lines.size() && std::any_of(changed.begin(), changed.end(), is_closer))
+        best = w.lines.size();  // a new line beside an old one
       if (best == w.lines.size()) {
         fresh.push_back(line);
         continue;
@@ -156,12 +161,15 @@ private:
       for (std::size_t c = 0; c < 2; ++c) {
         const auto was = w.lines[best].residue[c];
         const auto more = line.residue[c] - was, drift = was * (line.pole - w.lines[best].pole);
-        d.col(static_cast<Eigen::Index>(c)).segment<4>(4 * static_cast<Eigen::Index>(best)) << more.real(), -more.imag(), drift.real(), -drift.imag();
+        d.col(static_cast<Eigen::Index>(c)).segment<4>(4 * static_cast<Eigen::Index>(best)) << more.real(), -more.imag(),
+            drift.real(), -drift.imag();
       }
     }
     for (std::size_t j = 0; j < w.lines.size(); ++j)
       if (!met[j])
-        for (Eigen::Index c = 0; c < 2; ++c) d.col(c).segment<2>(4 * static_cast<Eigen::Index>(j)) << -w.lines[j].residue[static_cast<std::size_t>(c)].real(), w.lines[j].residue[static_cast<std::size_t>(c)].imag();
+        for (Eigen::Index c = 0; c < 2; ++c)
+          d.col(c).segment<2>(4 * static_cast<Eigen::Index>(j)) << -w.lines[j].residue[static_cast<std::size_t>(c)].real(),
+              w.lines[j].residue[static_cast<std::size_t>(c)].imag();
     keep_strongest(fresh);
     const std::size_t count = problem_.part(take, 1).count();
     std::vector<line_steps> steps;
@@ -180,7 +188,8 @@ private:
     }
     for (std::size_t i = 0; i < fresh.size(); ++i)
       for (std::size_t k = 0; k < fresh.size(); ++k) {
-        const auto same = power_sums(steps[i] * steps[k], step_s, count)[0], other = power_sums(steps[i] * conj(steps[k]), step_s, count)[0];
+        const auto same = power_sums(steps[i] * steps[k], step_s, count)[0],
+                   other = power_sums(steps[i] * conj(steps[k]), step_s, count)[0];
         for (std::size_t c = 0; c < 2; ++c) {
           const auto a = fresh[i].residue[c], b = fresh[k].residue[c];
           dd += 0.5 * (a * b * same + a * std::conj(b) * other).real() / std::pow(problem_.noise()[c], 2);
@@ -192,22 +201,28 @@ private:
   static void keep_strongest(std::vector<damped_line>& lines) {
     constexpr std::size_t most = 10;
     if (lines.size() <= most) return;
-    const auto power = [](const damped_line& l) { return (std::norm(l.residue[0]) + std::norm(l.residue[1])) / std::max(1e-9, -l.pole.real()); };
-    std::nth_element(lines.begin(), lines.begin() + most, lines.end(), [&](const auto& a, const auto& b) { return power(a) > power(b); });
+    const auto power = [](const damped_line& l) {
+      return (std::norm(l.residue[0]) + std::norm(l.residue[1])) / std::max(1e-9, -l.pole.real());
+    };
+    std::nth_element(lines.begin(), lines.begin() + most, lines.end(),
+                     [&](const auto& a, const auto& b) { return power(a) > power(b); });
     lines.resize(most);
   }
 
   /// Products of new lines with the basis of the view, channel by channel.
-  [[nodiscard]] static Eigen::MatrixX2d cross_gram(const view& w, const std::vector<damped_line>& fresh, const std::vector<line_steps>& steps, double step_s, std::size_t count) {
+  [[nodiscard]] static Eigen::MatrixX2d cross_gram(const view& w, const std::vector<damped_line>& fresh,
+                                                   const std::vector<line_steps>& steps, double step_s, std::size_t count) {
     Eigen::MatrixX2d out = Eigen::MatrixX2d::Zero(4 * static_cast<Eigen::Index>(w.lines.size()), 2);
     for (std::size_t i = 0; i < fresh.size(); ++i)
       for (std::size_t j = 0; j < w.lines.size(); ++j) {
-        const auto same = power_sums(steps[i] * w.steps[j], step_s, count), other = power_sums(conj(steps[i]) * w.steps[j], step_s, count);
+        const auto same = power_sums(steps[i] * w.steps[j], step_s, count),
+                   other = power_sums(conj(steps[i]) * w.steps[j], step_s, count);
         for (std::size_t k = 0; k < 2; ++k)  // Re{a z} against Re{z_j}, Im{z_j}, without and with t
           for (std::size_t c = 0; c < 2; ++c) {
             const auto a = fresh[i].residue[c];
             const std::complex<double> sum = 0.5 * (a * same[k] + std::conj(a) * other[k]);
-            const auto at = 4 * static_cast<Eigen::Index>(j) + 2 * static_cast<Eigen::Index>(k), column = static_cast<Eigen::Index>(c);
+            const auto at = 4 * static_cast<Eigen::Index>(j) + 2 * static_cast<Eigen::Index>(k),
+                       column = static_cast<Eigen::Index>(c);
             out(at, column) += sum.real(), out(at + 1, column) += sum.imag();
           }
       }

@@ -1,11 +1,12 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A string that meets an obstacle when it swings far enough: a force at one place, in one direction only, at the same displacement
-// each time. Nothing else of the catalogue needs so much motion, so that the pluck that meets it contradicts softer ones.
+// A string that meets an obstacle when it swings far enough: a force at one place, in one direction only, at the same
+// displacement each time. Nothing else of the catalogue needs so much motion, so that the pluck that meets it contradicts softer
+// ones.
 //
-// The place follows from both ends (mismatch_place.hpp); there the force is  f = D (A_1* r_1 + A_2* r_2) / (|A_1|^2 + |A_2|^2),  and the
-// string's displacement that of the pluck without an obstacle, plus what f makes of it:
+// The place follows from both ends (mismatch_place.hpp); there the force is  f = D (A_1* r_1 + A_2* r_2) / (|A_1|^2 + |A_2|^2),
+// and the string's displacement that of the pluck without an obstacle, plus what f makes of it:
 //
 //     y(s) = [y_0 - F M(p, x) / (s D) + M(x, x) f(s) / D] / s,     y_0 the held string's.
 //
@@ -27,18 +28,21 @@ struct rattle {
   double first_s = 0;              ///< first contact, from the take's beginning
   double begin_s = 0;              ///< of what follows
   std::array<Eigen::VectorXd, 2> before_N{}, left_N{};  ///< residual, and what a force at that place leaves of it
-  double before = 0, after = 0, floor = 0;  ///< rms residual / rms recorded without and with it; the noise's share
+  double before = 0, after = 0, floor = 0;              ///< rms residual / rms recorded without and with it; the noise's share
 };
 
 namespace detail {
 
 /// The record whose damped spectrum this is.
-[[nodiscard]] inline Eigen::VectorXd undamped(const damped_line_of_frequencies& line, std::vector<std::complex<double>> spectrum) {
+[[nodiscard]] inline Eigen::VectorXd undamped(const damped_line_of_frequencies& line,
+                                              std::vector<std::complex<double>> spectrum) {
   spectrum.resize(line.samples / 2 + 1, 0.0);
   std::vector<double> weighted(line.samples);
   eigen_fft<double>(line.samples).inverse(spectrum.data(), weighted.data());
   Eigen::VectorXd x(static_cast<Eigen::Index>(line.samples));
-  for (std::size_t n = 0; n < line.samples; ++n) x[static_cast<Eigen::Index>(n)] = weighted[n] * line.rate_Hz * std::exp(line.sigma_per_s * static_cast<double>(n) / line.rate_Hz);
+  for (std::size_t n = 0; n < line.samples; ++n)
+    x[static_cast<Eigen::Index>(n)] =
+        weighted[n] * line.rate_Hz * std::exp(line.sigma_per_s * static_cast<double>(n) / line.rate_Hz);
   return x;
 }
 
@@ -52,7 +56,8 @@ struct foretold {
   band limits{0, 0};
 };
 
-/// Release and strength from what precedes the release and less than half a period behind it, before the string can have swung over.
+/// Release and strength from what precedes the release and less than half a period behind it, before the string can have swung
+/// over.
 inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_take& take, double most_periods) {
   auto seen = see(d.data, d.best, take, 0.45);
   if (!seen) return std::nullopt;
@@ -65,7 +70,8 @@ inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_ta
   out.recorded = problem.part(0, 1).data, out.begin_s = problem.part(0, 1).begin_s;
   out.scene = scene_of(seen->data, seen->fit);
   for (std::size_t c = 0; c < 2; ++c) out.gain[c] = pluck_layout::gain(v, c);
-  out.position = v[layout.position(0)], out.strength_N = std::exp(v[layout.at(0, pluck_layout::strength)]), out.release_s = layout.release_s(v, 0), out.limits = problem.limits();
+  out.position = v[layout.position(0)], out.strength_N = std::exp(v[layout.at(0, pluck_layout::strength)]),
+  out.release_s = layout.release_s(v, 0), out.limits = problem.limits();
   return out;
 }
 
@@ -88,18 +94,23 @@ struct obstacle_motion {
 
 inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns_m) {
   const auto& r = t.left.force_N;
-  damped_line_of_frequencies line = place_search::line_over(static_cast<std::size_t>(r[0].size()), t.left.rate_Hz, t.limits.stop_Hz);
+  damped_line_of_frequencies line =
+      place_search::line_over(static_cast<std::size_t>(r[0].size()), t.left.rate_Hz, t.limits.stop_Hz);
   line.first = 0;
-  const std::array spectrum{damped_spectrum(line, {r[0].data(), line.samples}), damped_spectrum(line, {r[1].data(), line.samples})};
+  const std::array spectrum{damped_spectrum(line, {r[0].data(), line.samples}),
+                            damped_spectrum(line, {r[1].data(), line.samples})};
   std::vector<std::complex<double>> force(line.bins()), rise(line.bins());
   std::array at_ends{force, force};
-  const double p = t.position, held_m = t.strength_N * std::min(p, x) * (1 - std::max(p, x)) / (2 * t.scene.string.fundamental_Hz * impedance_Ns_m);
+  const double p = t.position, held_m = t.strength_N * std::min(p, x) * (1 - std::max(p, x)) /
+                                        (2 * t.scene.string.fundamental_Hz * impedance_Ns_m);
   for (std::size_t k = 0; k < line.bins(); ++k) {
     const std::complex<double> s = line.at(k), late = std::exp(s * (t.begin_s - t.release_s));
     const string_at string(t.scene, s);
     const loop_response loop = close_loop(t.scene, x, s);
-    const Eigen::Vector2cd share = recorded_of(t.scene, t.gain, s, loop.times_determinant[0] / loop.determinant, loop.times_determinant[1] / loop.determinant);
-    force[k] = share.dot(Eigen::Vector2cd{spectrum[0][k], spectrum[1][k]}) / share.squaredNorm();  // through the band, like all that is recorded
+    const Eigen::Vector2cd share = recorded_of(t.scene, t.gain, s, loop.times_determinant[0] / loop.determinant,
+                                               loop.times_determinant[1] / loop.determinant);
+    force[k] = share.dot(Eigen::Vector2cd{spectrum[0][k], spectrum[1][k]}) /
+               share.squaredNorm();  // through the band, like all that is recorded
     for (std::size_t c = 0; c < 2; ++c) at_ends[c][k] = share[static_cast<Eigen::Index>(c)] * force[k];
     const std::complex<double> by_pluck = held_m - t.strength_N * string.mobility(p, x) / (string.sine() * impedance_Ns_m * s);
     rise[k] = (late * by_pluck + string.mobility(x, x) / (string.sine() * impedance_Ns_m) * force[k]) / s;
@@ -111,7 +122,8 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
 
 /// Whether a pluck that contradicts the others met an obstacle. impedance_Ns_m: the string's.
 [[nodiscard]] inline std::optional<rattle> find_rattle(const odd_pluck& odd, double impedance_Ns_m) {
-  constexpr double most_periods = 24, least_one_sided = 0.8, most_spread = 0.1, give = 0.02;  // how far a stop yields is not told from the gap
+  constexpr double most_periods = 24, least_one_sided = 0.8, most_spread = 0.1,
+                   give = 0.02;  // how far a stop yields is not told from the gap
   auto t = detail::foretell(odd.others, odd.take, most_periods);
   if (!t || !(impedance_Ns_m > 0)) return std::nullopt;
   const auto& noise = odd.others.best.quality.noise;
@@ -121,7 +133,8 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
   if (out.place.on != acting::on_string || !search.is_mismatch() || !search.is_accounted_for(out.place)) return std::nullopt;
   const Eigen::VectorXd moved = search.nuisances(out.place);
   for (std::size_t c = 0; c < 2; ++c)
-    for (Eigen::Index k = 0; k < moved.size(); ++k) t->left.force_N[c] -= moved[k] * t->left.nuisances[static_cast<std::size_t>(k)][c];
+    for (Eigen::Index k = 0; k < moved.size(); ++k)
+      t->left.force_N[c] -= moved[k] * t->left.nuisances[static_cast<std::size_t>(k)][c];
   const detail::obstacle_motion at = detail::at_place(*t, out.place.position, impedance_Ns_m);
   const Eigen::Index used = at.force_N.size() / 2;  // the last of what is undamped is noise
   const Eigen::VectorXd f = at.force_N.head(used), y = at.rise_m.head(used);
@@ -132,16 +145,21 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
   const Eigen::VectorXd off = (y.array() - out.gap_m).abs();
   const double spread = detail::weighted_middle(off, weight);
   out.gap_sd_m = std::hypot(spread, give * out.gap_m);
-  const Eigen::Index first = std::find_if(weight.begin(), weight.end(), [&](double w) { return w > 0.01 * weight.maxCoeff(); }) - weight.begin();
+  const Eigen::Index first =
+      std::find_if(weight.begin(), weight.end(), [&](double w) { return w > 0.01 * weight.maxCoeff(); }) - weight.begin();
   out.begin_s = t->begin_s, out.first_s = t->begin_s + static_cast<double>(first) / odd.take.rate_Hz;
   double recorded = 0, before = 0, after = 0, noise_power = 0;
   for (std::size_t c = 0; c < 2; ++c) {
     out.before_N[c] = t->left.force_N[c].head(used), out.left_N[c] = out.before_N[c] - at.at_ends_N[c].head(used);
-    recorded += t->recorded[c].head(used).squaredNorm(), before += out.before_N[c].squaredNorm(), after += out.left_N[c].squaredNorm();
+    recorded += t->recorded[c].head(used).squaredNorm(), before += out.before_N[c].squaredNorm(),
+        after += out.left_N[c].squaredNorm();
     noise_power += std::pow(noise[c], 2) * static_cast<double>(used) * (t->limits.pass_Hz + t->limits.stop_Hz) / odd.take.rate_Hz;
   }
-  out.before = std::sqrt(before / recorded), out.after = std::sqrt(after / recorded), out.floor = std::sqrt(noise_power / recorded);
-  if (!(out.one_sided > least_one_sided) || !(side * out.gap_m > 0 || std::abs(out.gap_m) < spread) || !(spread < most_spread * y.cwiseAbs().maxCoeff())) return std::nullopt;
+  out.before = std::sqrt(before / recorded), out.after = std::sqrt(after / recorded),
+  out.floor = std::sqrt(noise_power / recorded);
+  if (!(out.one_sided > least_one_sided) || !(side * out.gap_m > 0 || std::abs(out.gap_m) < spread) ||
+      !(spread < most_spread * y.cwiseAbs().maxCoeff()))
+    return std::nullopt;
   return out;
 }
 
@@ -152,20 +170,22 @@ namespace detail {
   constexpr double most_apart = 0.01, sure = 3;
   const auto first = find_rattle(odd, impedance_Ns_m);
   return first && std::all_of(odd.also.begin(), odd.also.end(), [&](const pluck_take& take) {
-    odd_pluck other = odd;
-    other.take = take;
-    const auto again = find_rattle(other, impedance_Ns_m);
-    return again && std::abs(again->place.position - first->place.position) < most_apart && std::abs(again->gap_m - first->gap_m) < sure * std::hypot(again->gap_sd_m, first->gap_sd_m);
-  });
+           odd_pluck other = odd;
+           other.take = take;
+           const auto again = find_rattle(other, impedance_Ns_m);
+           return again && std::abs(again->place.position - first->place.position) < most_apart &&
+                  std::abs(again->gap_m - first->gap_m) < sure * std::hypot(again->gap_sd_m, first->gap_sd_m);
+         });
 }
 
 }  // namespace detail
 
-/// The strongest of at least three plucks and the next ones, where they met the same obstacle and the softer ones, diagnosed by themselves, leave
-/// nothing unexplained. For what no single odd one (odd_pluck.hpp) accounts for.
-[[nodiscard]] inline std::optional<odd_pluck> find_rattling_plucks(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
-                                                                   const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
-                                                                   double impedance_Ns_m) {
+/// The strongest of at least three plucks and the next ones, where they met the same obstacle and the softer ones, diagnosed by
+/// themselves, leave nothing unexplained. For what no single odd one (odd_pluck.hpp) accounts for.
+[[nodiscard]] inline std::optional<odd_pluck> find_rattling_plucks(
+    const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
+    const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
+    double impedance_Ns_m) {
   std::vector<pluck_take> all = takes;
   all.insert(all.end(), held.begin(), held.end());
   std::stable_sort(all.begin(), all.end(), [](const pluck_take& a, const pluck_take& b) { return a.strength_N > b.strength_N; });

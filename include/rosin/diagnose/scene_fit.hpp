@@ -38,7 +38,8 @@ struct scene_data {
   pluck_layout layout;
   band_kernels kernels{};
 
-  /// What is free in a fit that a fit with everything free is compared with: ends were moved along with an effect that is then taken out.
+  /// What is free in a fit that a fit with everything free is compared with: ends were moved along with an effect that is then
+  /// taken out.
   [[nodiscard]] freedom compared() const { return layout.has_ends() ? freedom::all : freedom::no_corrections; }
 
   /// The recordings without what effects that are not linear have put in.
@@ -46,14 +47,24 @@ struct scene_data {
     std::vector<pluck_take> out = takes;
     Eigen::Index at = layout.size();
     for (const pluck_effect& e : effects) {
-      if (e.undo && value[at] != 0) e.undo(out, scene_plucks(layout, guess.ac_coupled_Hz, effects).scene(value, 0), layout, value, value[at]);
+      if (e.undo && value[at] != 0)
+        e.undo(out, scene_plucks(layout, guess.ac_coupled_Hz, effects).scene(value, 0), layout, value, value[at]);
       at += static_cast<Eigen::Index>(e.parameters.size());
     }
     return out;
   }
-  [[nodiscard]] line_problem<scene_plucks> problem(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value, const fit_stage& stage,
-                                                   std::array<double, 2> noise) const {
-    return {undone(effects, value), scene_plucks(layout, guess.ac_coupled_Hz, effects, stage.free), options, guess, value, stage.partials, stage.periods, stage.filtered, noise, kernels};
+  [[nodiscard]] line_problem<scene_plucks> problem(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value,
+                                                   const fit_stage& stage, std::array<double, 2> noise) const {
+    return {undone(effects, value),
+            scene_plucks(layout, guess.ac_coupled_Hz, effects, stage.free),
+            options,
+            guess,
+            value,
+            stage.partials,
+            stage.periods,
+            stage.filtered,
+            noise,
+            kernels};
   }
 };
 
@@ -65,7 +76,8 @@ struct scene_data {
 namespace detail {
 
 /// The residual of a fit in the ringing part of a take.
-inline std::array<Eigen::VectorXd, 2> residual_of(const line_problem<scene_plucks>& p, const Eigen::VectorXd& v, std::size_t take) {
+inline std::array<Eigen::VectorXd, 2> residual_of(const line_problem<scene_plucks>& p, const Eigen::VectorXd& v,
+                                                  std::size_t take) {
   const auto& s = p.part(take, 1);
   const std::vector<damped_line> lines = p.lines(v, take, 1);
   const Eigen::MatrixXd model = line_runner(lines, 1 / p.rate_Hz(take)).sum(lines, s.count());
@@ -108,7 +120,8 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
   Eigen::Index at = data.layout.size();
   std::size_t i = 0;
   for (const pluck_effect& e : fit.effects) {
-    if (e.parameters[0].by_score && i < fit.score_sd.size()) fit.covariance(at, at) = fit.quality.inflation() * std::pow(fit.score_sd[i++], 2);
+    if (e.parameters[0].by_score && i < fit.score_sd.size())
+      fit.covariance(at, at) = fit.quality.inflation() * std::pow(fit.score_sd[i++], 2);
     at += static_cast<Eigen::Index>(e.parameters.size());
   }
   fit.sd = fit.covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -117,8 +130,9 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
 }  // namespace detail
 
 /// `value`: starting values of all parameters (scene_plucks); the noise weighs the channels. Assessed after the last stage.
-[[nodiscard]] inline scene_fit fit_scene(const scene_data& data, const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value,
-                                         std::vector<fit_stage> stages, std::array<double, 2> noise) {
+[[nodiscard]] inline scene_fit fit_scene(const scene_data& data, const std::vector<pluck_effect>& effects,
+                                         const Eigen::VectorXd& value, std::vector<fit_stage> stages,
+                                         std::array<double, 2> noise) {
   scene_fit fit{effects, value, {}, {}, {}, {}, 0, 0, false};
   bool again = false;  // what is taken out of the recordings depends on the fit
   for (const pluck_effect& e : effects) {
@@ -130,7 +144,8 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
     for (int round = 0; round < (again ? (last ? 8 : 2) : 1); ++round) {
       const line_problem<scene_plucks> problem = data.problem(effects, fit.value, stages[i], noise);
       const int before = fit.iterations;
-      fit.converged = detail::descend(problem, problem.model(), value, fit.value, last ? 25 : 10, last ? 1e-2 : 1.0, fit.iterations);
+      fit.converged =
+          detail::descend(problem, problem.model(), value, fit.value, last ? 25 : 10, last ? 1e-2 : 1.0, fit.iterations);
       fit.score_sd.clear();
       if (again && detail::score_steps(data, fit, stages[i], noise) < 0.05 && fit.iterations <= before + 1) break;
     }

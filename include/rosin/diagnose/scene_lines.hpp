@@ -1,7 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// The damped lines of a scene, as its two channels record a pluck of 1 N from the instant of release on. Factors that a pole s meets:
+// The damped lines of a scene, as its two channels record a pluck of 1 N from the instant of release on. Factors that a pole s
+// meets:
 //
 //     wire lets go over d:   (1/2) (1 + e^{-s d}) a^2 / (a^2 + s^2),  a = pi / d     (transform of -F'(t)/F0)
 //     wire of width w:       sin(k w / 2) / (k w / 2)
@@ -25,7 +26,8 @@ inline std::complex<double> wire_factor(const pluck_scene& scene, std::complex<d
     factor *= 0.5 * (1.0 + std::exp(-s * d)) * (a * a) * plain::reciprocal(a * a + s * s);
   }
   if (scene.width > 0) {
-    const double w = std::abs(s.imag()), half = phase_rate(w, std::max(scene.string.stiffness_s2(), 0.0)) / (4 * scene.string.fundamental_Hz) * scene.width;
+    const double w = std::abs(s.imag()), half = phase_rate(w, std::max(scene.string.stiffness_s2(), 0.0)) /
+                                                (4 * scene.string.fundamental_Hz) * scene.width;
     if (half > 1e-9) factor *= std::sin(half) / half;
   }
   return factor;
@@ -45,7 +47,8 @@ inline std::vector<damped_line> string_lines(const pluck_scene& scene, double po
   return lines;
 }
 
-/// Frequency of a partial under a tension that moves f0 by the factor 1 + detuning, relative to what it was: stiffness is not moved.
+/// Frequency of a partial under a tension that moves f0 by the factor 1 + detuning, relative to what it was: stiffness is not
+/// moved.
 inline double stretched(const ringing_string& string, double frequency_Hz, double detuning) {
   const double x = std::pow(frequency_Hz / string.fundamental_Hz, 2), b = std::max(0.0, string.inharmonicity);
   const double n2 = 2 * x / (1 + std::sqrt(1 + 4 * b * x)), d = 1 + detuning;  // x = n^2 (1 + b n^2)
@@ -85,7 +88,8 @@ inline void add_sensor_ringing(const pluck_scene& scene, double position, std::v
 }  // namespace detail
 
 /// What wire, polarisation and sensors make of the string's own lines (detail::string_lines).
-[[nodiscard]] inline std::vector<damped_line> recorded_lines(std::vector<damped_line> lines, const pluck_scene& scene, double position, const band& limits) {
+[[nodiscard]] inline std::vector<damped_line> recorded_lines(std::vector<damped_line> lines, const pluck_scene& scene,
+                                                             double position, const band& limits) {
   detail::add_polarisation(scene, lines);
   for (damped_line& line : lines) {
     const std::complex<double> wire = detail::wire_factor(scene, line.pole);

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Plucks of a string together with effects of the catalogue, as the fit sees them: the parameters of pluck_layout, then those of
-// the effects. Poles depend on what all takes share only, so they are kept: a take's position, release or gain costs no new search.
+// the effects. Poles depend on what all takes share only, so they are kept: a take's position, release or gain costs no new
+// search.
 //
 #pragma once
 
@@ -16,10 +17,12 @@ namespace rosin {
 
 namespace detail {
 
-/// Strings met so far, the newest last: their poles, each search begun from the nearest, and their lines for each place of a pluck.
+/// Strings met so far, the newest last: their poles, each search begun from the nearest, and their lines for each place of a
+/// pluck.
 class string_memory {
 public:
-  [[nodiscard]] const std::vector<damped_line>& lines(const Eigen::VectorXd& key, const pluck_scene& scene, double position, const band& limits, int most) {
+  [[nodiscard]] const std::vector<damped_line>& lines(const Eigen::VectorXd& key, const pluck_scene& scene, double position,
+                                                      const band& limits, int most) {
     entry& e = of(key, scene, limits.stop_Hz, most);
     for (const auto& [place, lines] : e.lines)
       if (place == position) return lines;
@@ -42,7 +45,8 @@ private:
       const double apart = ((e.key - key).array() / (e.key.array().abs() + 1e-9)).abs().maxCoeff();
       if (apart < nearest) nearest = apart, start = e.poles;
     }
-    if (kept_.size() > std::max<std::size_t>(80, 4 * static_cast<std::size_t>(key.size()))) kept_.erase(kept_.begin(), kept_.begin() + 40);
+    if (kept_.size() > std::max<std::size_t>(80, 4 * static_cast<std::size_t>(key.size())))
+      kept_.erase(kept_.begin(), kept_.begin() + 40);
     return kept_.emplace_back(entry{key, string_poles(scene, highest_Hz, most, start), {}});
   }
 
@@ -52,16 +56,23 @@ private:
 }  // namespace detail
 
 /// Fitted value of a parameter from its physical one, and back.
-[[nodiscard]] inline double to_fitted(const effect_parameter& p, double physical) { return p.logarithmic ? std::log(physical) : physical; }
-[[nodiscard]] inline double to_physical(const effect_parameter& p, double fitted) { return p.logarithmic ? std::exp(fitted) : fitted; }
+[[nodiscard]] inline double to_fitted(const effect_parameter& p, double physical) {
+  return p.logarithmic ? std::log(physical) : physical;
+}
+[[nodiscard]] inline double to_physical(const effect_parameter& p, double fitted) {
+  return p.logarithmic ? std::exp(fitted) : fitted;
+}
 
-/// Which parameters a fit moves. Corrections: late parameters, and how far declared terminations are off. Of a take that is only predicted, release and strength alone.
+/// Which parameters a fit moves. Corrections: late parameters, and how far declared terminations are off. Of a take that is only
+/// predicted, release and strength alone.
 enum class freedom { all, no_corrections, release_only };
 
 class scene_plucks : public pluck_layout {
 public:
-  scene_plucks(const pluck_layout& layout, std::array<double, 2> corner_Hz, std::vector<pluck_effect> effects, freedom free = freedom::all)
-      : pluck_layout{layout}, corner_Hz_{corner_Hz}, effects_{std::move(effects)}, free_{free}, strings_{std::make_shared<detail::string_memory>()} {
+  scene_plucks(const pluck_layout& layout, std::array<double, 2> corner_Hz, std::vector<pluck_effect> effects,
+               freedom free = freedom::all)
+      : pluck_layout{layout},
+        corner_Hz_{corner_Hz}, effects_{std::move(effects)}, free_{free}, strings_{std::make_shared<detail::string_memory>()} {
     for (const auto& e : effects_)
       for (const auto& p : e.parameters) added_.push_back(p);
   }
@@ -78,7 +89,9 @@ public:
   }
   [[nodiscard]] bool is_free(Eigen::Index p) const {
     if (free_ == freedom::release_only)
-      return p >= plain_size() ? added(p).take >= 0 : p >= at(0, 0) && p < first_of_ends() && (p - at(0, 0)) % take_size <= static_cast<Eigen::Index>(pluck_layout::strength);
+      return p >= plain_size() ? added(p).take >= 0
+                               : p >= at(0, 0) && p < first_of_ends() &&
+                                     (p - at(0, 0)) % take_size <= static_cast<Eigen::Index>(pluck_layout::strength);
     if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_ends())) return false;
     return p >= plain_size() ? !added(p).by_score : pluck_layout::is_free(p);
   }
@@ -87,7 +100,9 @@ public:
     if (p < plain_size()) return pluck_layout::concerns(p, take);
     return added(p).take < 0 || added(p).take == static_cast<int>(take);
   }
-  [[nodiscard]] double step(Eigen::Index p, const Eigen::VectorXd& v) const { return p < plain_size() ? pluck_layout::step(p, v) : added(p).step; }
+  [[nodiscard]] double step(Eigen::Index p, const Eigen::VectorXd& v) const {
+    return p < plain_size() ? pluck_layout::step(p, v) : added(p).step;
+  }
   [[nodiscard]] knowledge prior(Eigen::Index p, const std::vector<pluck_take>& takes, const pluck_guess& guess) const {
     return p < plain_size() ? pluck_layout::prior(p, takes, guess) : knowledge{0, 0};
   }
@@ -119,11 +134,15 @@ public:
     const pluck_scene s = scene(v, static_cast<int>(take));
     const double position_now = v[position(take)], released = release_s(v, take), newtons = std::exp(v[at(take, strength)]);
     std::vector<damped_line> out;
-    std::array<double, 2> remembered{};  // of the lines, by a high-pass: r s / (s + w) of a line r / (s - p) leaves Re(r w / (p + w)) exp(-w t)
+    // of the lines, by a high-pass: r s / (s + w) of a line r / (s - p) leaves Re(r w / (p + w)) exp(-w t)
+    std::array<double, 2> remembered{};
     if (part == 1) {
-      out = s.plain_string() ? scene_lines(s, position_now, limits, most, {}) : recorded_lines(strings_->lines(key(v, s), s, position_now, limits, most), s, position_now, limits);
+      out = s.plain_string() ? scene_lines(s, position_now, limits, most, {})
+                             : recorded_lines(strings_->lines(key(v, s), s, position_now, limits, most), s, position_now, limits);
       for (damped_line& line : out) {
-        for (std::size_t c = 0; c < 2; ++c) remembered[c] += 2 * std::numbers::pi * s.sensors[c].corner_Hz * (line.residue[c] * plain::reciprocal(line.pole)).real();
+        for (std::size_t c = 0; c < 2; ++c)
+          remembered[c] +=
+              2 * std::numbers::pi * s.sensors[c].corner_Hz * (line.residue[c] * plain::reciprocal(line.pole)).real();
         const std::complex<double> turned = newtons * std::exp(line.pole * (begin_s - released));
         for (auto& r : line.residue) r *= turned;
       }
@@ -149,7 +168,8 @@ private:
     const Eigen::Index more = v.size() - first_of_ends();
     Eigen::VectorXd k(gain_near + more + 1);
     k << v.head(gain_near), v.tail(more), s.string.fundamental_Hz;
-    k.segment(gain_near, plain_size() - first_of_ends()).array() += 1;  // logarithms about 0: how near a string is tells by their size
+    k.segment(gain_near, plain_size() - first_of_ends()).array() +=
+        1;  // logarithms about 0: how near a string is tells by their size
     return k;
   }
 

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// What wire and sensors of a scene make of forces that are there as samples, not as damped lines: the same factors as in scene_lines.hpp, in the
-// frequency domain; the high-pass, whose memory is long, step by step.
+// What wire and sensors of a scene make of forces that are there as samples, not as damped lines: the same factors as in
+// scene_lines.hpp, in the frequency domain; the high-pass, whose memory is long, step by step.
 //
 #pragma once
 
@@ -26,7 +26,8 @@ void filter_record(std::vector<double>& x, double rate_Hz, const Response& respo
   if (x.empty()) return;
   held_record record(x.size(), 4096);
   auto bins = record.spectrum(x);
-  for (std::size_t k = 1; k < bins.size(); ++k) bins[k] *= response(std::complex<double>{0, 2 * std::numbers::pi * record.frequency_Hz(k, rate_Hz)});
+  for (std::size_t k = 1; k < bins.size(); ++k)
+    bins[k] *= response(std::complex<double>{0, 2 * std::numbers::pi * record.frequency_Hz(k, rate_Hz)});
   x = record.record(std::move(bins));
 }
 
@@ -44,10 +45,14 @@ inline void unring(std::vector<double>& x, sensor_response sensor, double rate_H
 
 }  // namespace detail
 
-/// Forces on {near, far} that a sudden release would have made, from then on; by the wire's width and the time that it takes to let go.
+/// Forces on {near, far} that a sudden release would have made, from then on; by the wire's width and the time that it takes to
+/// let go.
 inline void pass_wire(std::array<std::vector<double>, 2>& force_N, const pluck_scene& scene, double rate_Hz) {
   if (!(scene.release_duration_s > 0 || scene.width > 0)) return;
-  for (auto& x : force_N) detail::filter_record(x, rate_Hz, [&](std::complex<double> s) { return detail::wire_factor(scene, s + 1.0); });  // beside the zero of its denominator
+  for (auto& x : force_N)
+    detail::filter_record(x, rate_Hz, [&](std::complex<double> s) {
+      return detail::wire_factor(scene, s + 1.0);
+    });  // beside the zero of its denominator
 }
 
 /// Forces on {near, far}, nothing before, as the channels record them but for their gains: ringing, delay, high-pass, leakage.

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// The equation of sticking (contact_stick.hpp) as rows and columns: columns are added to it by whoever has a hypothesis, their coefficients
-// kept within bounds, and every fit knows how well each take is predicted from the others.
+// The equation of sticking (contact_stick.hpp) as rows and columns: columns are added to it by whoever has a hypothesis, their
+// coefficients kept within bounds, and every fit knows how well each take is predicted from the others.
 //
 #pragma once
 
@@ -48,8 +48,10 @@ namespace detail {
           {r.target.tail(rest), r.shared.bottomRows(rest), r.own.bottomRows(rest), {middle, r.sample.end()}}};
 }
 
-/// Log density of one part under the shared coefficients of the others; its own coefficients and the size of what is left are its own.
-[[nodiscard]] inline double predict_part(const std::vector<stick_rows>& parts, std::size_t which, double floor, const stick_prior& prior) {
+/// Log density of one part under the shared coefficients of the others; its own coefficients and the size of what is left are its
+/// own.
+[[nodiscard]] inline double predict_part(const std::vector<stick_rows>& parts, std::size_t which, double floor,
+                                         const stick_prior& prior) {
   std::vector<stick_rows> others;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (i != which && parts[i].target.size() > parts[i].own.cols() + parts[i].shared.cols()) others.push_back(parts[i]);

@@ -5,8 +5,8 @@
 //
 //     q_n'' + (w_n / Q) q_n' + [w_n^2 + e(t) (c k_n)^2] q_n = 0,    e = EA / (2 L T) integral y'^2 dx = EA / (4 T) sum (k_n q_n)^2
 //
-// (Kirchhoff; Carrier 1945), stepped: each mode turns exactly through half a step, is kicked by the tension, and turns on (Strang).
-// Motion across the plane of the pluck stretches it as well, and feels the same tension.
+// (Kirchhoff; Carrier 1945), stepped: each mode turns exactly through half a step, is kicked by the tension, and turns on
+// (Strang). Motion across the plane of the pluck stretches it as well, and feels the same tension.
 //
 #pragma once
 
@@ -29,21 +29,27 @@ struct second_plane {
 /// Forces on both ends of a plucked string whose tension follows its length.
 class stretching_pluck {
 public:
-  /// Partials to `most` below the stop frequency, seen through the band. Both planes have one tension: of the square of the motion a share
-  /// c / (1 + c) is across, c = |coupling|, as if the angles of pluck and sensors were alike.
-  stretching_pluck(const ringing_string& string, double position, double force_over_tension, const band& limits, int most, second_plane other = {}) : force_{force_over_tension} {
+  /// Partials to `most` below the stop frequency, seen through the band. Both planes have one tension: of the square of the
+  /// motion a share c / (1 + c) is across, c = |coupling|, as if the angles of pluck and sensors were alike.
+  stretching_pluck(const ringing_string& string, double position, double force_over_tension, const band& limits, int most,
+                   second_plane other = {})
+      : force_{force_over_tension} {
     const double c = other.coupling, across = std::abs(c) / (1 + std::abs(c));
     ringing_string second = string;
     second.fundamental_Hz *= 1 + other.detuning, second.inharmonicity /= std::pow(1 + other.detuning, 2);
-    const int first_count = partials_of(string, limits.stop_Hz, most), second_count = c != 0 ? partials_of(second, limits.stop_Hz, most) : 0;
-    for (Eigen::ArrayXd* x : {&held_, &kick_, &stiff_, &weight_, &share_, &sign_, &decay_1_s_, &turn_rad_s_}) x->resize(first_count + second_count);
+    const int first_count = partials_of(string, limits.stop_Hz, most),
+              second_count = c != 0 ? partials_of(second, limits.stop_Hz, most) : 0;
+    for (Eigen::ArrayXd* x : {&held_, &kick_, &stiff_, &weight_, &share_, &sign_, &decay_1_s_, &turn_rad_s_})
+      x->resize(first_count + second_count);
     put(string, position, limits, 0, first_count, 1 / (1 + c), 1 - across);
     put(second, position, limits, first_count, second_count, c / (1 + c), across);
   }
 
-  /// Forces on {near, far}, relative to the pluck's own: `count` values, the first `first_s` after the release (in [0, sample_s]), then every sample_s, each reached in `steps` steps.
-  /// stretch: EA / (4 T), dimensionless with k q in units of slope.
-  [[nodiscard]] std::array<std::vector<double>, 2> run(double stretch, double first_s, double sample_s, std::size_t steps, std::size_t count) const {
+  /// Forces on {near, far}, relative to the pluck's own: `count` values, the first `first_s` after the release (in [0,
+  /// sample_s]), then every sample_s, each reached in `steps` steps. stretch: EA / (4 T), dimensionless with k q in units of
+  /// slope.
+  [[nodiscard]] std::array<std::vector<double>, 2> run(double stretch, double first_s, double sample_s, std::size_t steps,
+                                                       std::size_t count) const {
     Eigen::ArrayXd q, p = Eigen::ArrayXd::Zero(held_.size()), scratch;
     double e = 0;
     for (int i = 0; i < 8; ++i) {  // the held string is stretched as well
@@ -93,7 +99,8 @@ private:
       const double c_k = 2 * std::numbers::pi * string.fundamental_Hz * n, b = string.inharmonicity * n * n;
       // Slope amplitude k q of the held string: 2 F sin(k x) / (L k (T + B k^2)) -> (2 / (n pi)) (F/T) sin / (1 + b)
       held_[i] = 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) / (1 + b);
-      kick_[i] = c_k * c_k, stiff_[i] = 1 + b, weight_[i] = heard * band_weight(limits, {-w * half, w}).real(), share_[i] = share, sign_[i] = n % 2 ? 1 : -1;
+      kick_[i] = c_k * c_k, stiff_[i] = 1 + b, weight_[i] = heard * band_weight(limits, {-w * half, w}).real(), share_[i] = share,
+      sign_[i] = n % 2 ? 1 : -1;
       decay_1_s_[i] = w * half, turn_rad_s_[i] = w * std::sqrt(1 - half * half);
     }
   }
@@ -112,10 +119,12 @@ private:
   [[nodiscard]] half_turn half_turn_in(double step_s) const {
     const double h = step_s / 2;
     const Eigen::ArrayXd decay = (-decay_1_s_ * h).exp(), s = (turn_rad_s_ * h).sin() / turn_rad_s_, c = (turn_rad_s_ * h).cos();
-    return {decay * (c + decay_1_s_ * s), decay * s, -decay * (decay_1_s_.square() + turn_rad_s_.square()) * s, decay * (c - decay_1_s_ * s)};
+    return {decay * (c + decay_1_s_ * s), decay * s, -decay * (decay_1_s_.square() + turn_rad_s_.square()) * s,
+            decay * (c - decay_1_s_ * s)};
   }
 
-  void step(Eigen::ArrayXd& q, Eigen::ArrayXd& p, Eigen::ArrayXd& scratch, const half_turn& turn, double stretch, double step_s) const {
+  void step(Eigen::ArrayXd& q, Eigen::ArrayXd& p, Eigen::ArrayXd& scratch, const half_turn& turn, double stretch,
+            double step_s) const {
     turn(q, p, scratch);
     p -= stretch * squared(q) * step_s * kick_ * q;
     turn(q, p, scratch);
@@ -125,12 +134,14 @@ private:
   Eigen::ArrayXd held_, kick_, stiff_, weight_, share_, sign_, decay_1_s_, turn_rad_s_;  ///< mode by mode
 };
 
-/// What the tension of a plucked string is higher by in the mean over the first periods, relatively: half of e is there in the mean, as half
-/// of the energy is.
-[[nodiscard]] inline double mean_stretch(const ringing_string& string, double position, double force_over_tension, double stretch, double periods) {
+/// What the tension of a plucked string is higher by in the mean over the first periods, relatively: half of e is there in the
+/// mean, as half of the energy is.
+[[nodiscard]] inline double mean_stretch(const ringing_string& string, double position, double force_over_tension, double stretch,
+                                         double periods) {
   double sum = 0;
   for (int n = 1; n <= 200; ++n) {
-    const double q = force_over_tension * 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) / (1 + string.inharmonicity * n * n);
+    const double q = force_over_tension * 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) /
+                     (1 + string.inharmonicity * n * n);
     const double lost = 2 * std::numbers::pi * n * periods * std::max(0.0, string.loss.inverse_q(n * string.fundamental_Hz));
     sum += 0.5 * q * q * (lost > 1e-6 ? -std::expm1(-lost) / lost : 1.0);
   }

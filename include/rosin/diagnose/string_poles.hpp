@@ -19,12 +19,14 @@ namespace rosin {
 namespace detail {
 
 /// The polynomials of the ends' modes that lie within `reach` of a place: zero where a weak mode all but has its pole.
-inline std::complex<double> mode_zeros(const pluck_scene& scene, std::complex<double> s, std::complex<double> around, double reach) {
+inline std::complex<double> mode_zeros(const pluck_scene& scene, std::complex<double> s, std::complex<double> around,
+                                       double reach) {
   std::complex<double> value = 1;
   for (const yielding_end& end : scene.ends)
     for (const admittance_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
-      if (std::abs((m.q < 0.5 ? m.pole().imag() : w) - around.imag()) < reach) value *= (s * s + s * (w / m.q) + w * w) * (1 / (w * w));
+      if (std::abs((m.q < 0.5 ? m.pole().imag() : w) - around.imag()) < reach)
+        value *= (s * s + s * (w / m.q) + w * w) * (1 / (w * w));
     }
   return value;
 }
@@ -35,7 +37,8 @@ inline std::complex<double> characteristic(const pluck_scene& scene, std::comple
 }
 
 /// One Aberth sweep over the roots that are not settled yet; returns the largest correction relative to the spacing.
-inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>& roots, std::vector<bool>& settled, double strength, double spacing) {
+inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>& roots, std::vector<bool>& settled,
+                    double strength, double spacing) {
   constexpr std::size_t neighbours = 3;
   double largest = 0;
   for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -46,7 +49,8 @@ inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>&
     std::complex<double> repulsion = 0;
     double nearest = spacing * spacing;
     for (std::size_t j = i > neighbours ? i - neighbours : 0; j < std::min(roots.size(), i + neighbours + 1); ++j)
-      if (const double apart = std::norm(roots[i] - roots[j]); j != i && apart > 1e-18 * spacing * spacing) repulsion += plain::reciprocal(roots[i] - roots[j]), nearest = std::min(nearest, apart);
+      if (const double apart = std::norm(roots[i] - roots[j]); j != i && apart > 1e-18 * spacing * spacing)
+        repulsion += plain::reciprocal(roots[i] - roots[j]), nearest = std::min(nearest, apart);
     // The roots that are not sought stand in a regular comb; only what a neighbour adds beyond it must repel.
     std::complex<double> step = newton * plain::reciprocal(1.0 - newton * repulsion);
     if (std::norm(newton) < std::min(4e-4 * spacing * spacing, 0.1 * nearest) || !std::isfinite(std::norm(step))) step = newton;
@@ -59,7 +63,8 @@ inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>&
 }
 
 /// Sweeps until all roots are settled; false where they are not after that many.
-inline bool settle(const pluck_scene& scene, std::vector<std::complex<double>>& roots, double strength, double spacing, int most) {
+inline bool settle(const pluck_scene& scene, std::vector<std::complex<double>>& roots, double strength, double spacing,
+                   int most) {
   std::vector<bool> settled(roots.size(), false);
   for (int i = 0; i < most; ++i)
     if (const double moved = sweep(scene, roots, settled, strength, spacing); !(moved >= 1e-5)) return std::isfinite(moved);
@@ -67,7 +72,8 @@ inline bool settle(const pluck_scene& scene, std::vector<std::complex<double>>& 
 }
 
 /// No root has wandered to another's place.
-inline bool stayed(const std::vector<std::complex<double>>& roots, const std::vector<std::complex<double>>& begin, double spacing) {
+inline bool stayed(const std::vector<std::complex<double>>& roots, const std::vector<std::complex<double>>& begin,
+                   double spacing) {
   for (std::size_t i = 0; i < roots.size(); ++i) {
     if (!(std::norm(roots[i] - begin[i]) < 0.04 * spacing * spacing)) return false;
     for (std::size_t j = i + 1; j < std::min(roots.size(), i + 3); ++j)
@@ -83,13 +89,16 @@ inline std::vector<std::complex<double>> with_real_poles(std::vector<std::comple
   return poles;
 }
 
-/// The n-th partial of a string whose ends resist turning, but for what else is in the scene: q L = n pi + the phases that the ends are ahead by.
+/// The n-th partial of a string whose ends resist turning, but for what else is in the scene: q L = n pi + the phases that the
+/// ends are ahead by.
 inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   if (scene.ends[0].clamping == 0 && scene.ends[1].clamping == 0) return scene.string.partial_Hz(n);
   const double epsilon = std::max(scene.string.stiffness_s2(), 1e-30), length = 0.5 / scene.string.fundamental_Hz;
   double q = n * std::numbers::pi / length;
   for (int i = 0; i < 30; ++i) {
-    const double next = (n * std::numbers::pi + phase_ahead(q, epsilon, scene.ends[0].clamping) + phase_ahead(q, epsilon, scene.ends[1].clamping)) / length;
+    const double next = (n * std::numbers::pi + phase_ahead(q, epsilon, scene.ends[0].clamping) +
+                         phase_ahead(q, epsilon, scene.ends[1].clamping)) /
+                        length;
     if (std::abs(next - q) < 1e-12 * q) break;
     q = next;
   }
@@ -104,7 +113,8 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   const double spacing = 2 * std::numbers::pi * scene.string.fundamental_Hz;
   if (!near.empty()) {
     std::vector<std::complex<double>> roots = near;
-    if (detail::settle(scene, roots, 1.0, spacing, 8) && detail::stayed(roots, near, spacing)) return detail::with_real_poles(std::move(roots));
+    if (detail::settle(scene, roots, 1.0, spacing, 8) && detail::stayed(roots, near, spacing))
+      return detail::with_real_poles(std::move(roots));
   }
   std::vector<std::complex<double>> roots;
   for (int n = 1; n <= most; ++n) {
@@ -115,17 +125,22 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   for (const yielding_end& end : scene.ends)
     for (const admittance_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
-      if (m.q < 0.5) roots.push_back(m.pole() - 2 * scene.string.fundamental_Hz * m.per_mass_per_s * m.q / w);  // the slower one; the string draws the end back as well
+      if (m.q < 0.5)
+        roots.push_back(m.pole() - 2 * scene.string.fundamental_Hz * m.per_mass_per_s * m.q /
+                                       w);  // the slower one; the string draws the end back as well
       else roots.emplace_back(-w / (2 * m.q), w * std::sqrt(std::max(0.01, 1 - 0.25 / (m.q * m.q))));
     }
   std::sort(roots.begin(), roots.end(), [](auto a, auto b) { return a.imag() < b.imag(); });
   for (std::size_t i = 1; i < roots.size(); ++i)  // ends that are alike: where two begin at one place they would go on as one
-    if (std::norm(roots[i] - roots[i - 1]) < 1e-6 * spacing * spacing) roots[i] += roots[i].imag() == 0 ? std::complex<double>(-2e-3 * spacing) : std::complex<double>(0, 2e-3 * spacing);
+    if (std::norm(roots[i] - roots[i - 1]) < 1e-6 * spacing * spacing)
+      roots[i] += roots[i].imag() == 0 ? std::complex<double>(-2e-3 * spacing) : std::complex<double>(0, 2e-3 * spacing);
   const std::vector<std::complex<double>> begin = roots;
   std::vector<bool> none(roots.size(), false);
-  if (detail::sweep(scene, roots, none, 1.0, spacing) < 0.01 && detail::settle(scene, roots, 1.0, spacing, 8)) return detail::with_real_poles(std::move(roots));  // next to where it began
+  if (detail::sweep(scene, roots, none, 1.0, spacing) < 0.01 && detail::settle(scene, roots, 1.0, spacing, 8))
+    return detail::with_real_poles(std::move(roots));  // next to where it began
   roots = begin;
-  for (double strength = 0.125; strength <= 1.0; strength += 0.125) detail::settle(scene, roots, strength, spacing, strength == 1.0 ? 12 : 4);
+  for (double strength = 0.125; strength <= 1.0; strength += 0.125)
+    detail::settle(scene, roots, strength, spacing, strength == 1.0 ? 12 : 4);
   return detail::with_real_poles(std::move(roots));
 }
 
@@ -137,7 +152,9 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   for (const std::complex<double> s : poles) {
     const std::complex<double> h(0, 1e-4 * spacing);
     const loop_response above = close_loop(scene, position, s + h), below = close_loop(scene, position, s - h);
-    const std::complex<double> up = detail::mode_zeros(scene, s + h, s, spacing), down = detail::mode_zeros(scene, s - h, s, spacing);  // the loop as such is straight only far from a mode
+    const std::complex<double> up = detail::mode_zeros(scene, s + h, s, spacing),
+                               down = detail::mode_zeros(scene, s - h, s,
+                                                         spacing);  // the loop as such is straight only far from a mode
     const std::complex<double> over = plain::reciprocal((above.determinant * up - below.determinant * down) * s) * (-2.0 * h);
     damped_line line{s, {}};
     for (std::size_t e = 0; e < 2; ++e) {

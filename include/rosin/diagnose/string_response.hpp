@@ -9,8 +9,8 @@
 //     an end moved at unit speed feels  S = (Z/s) kc q / (q^2+kc^2) epsilon [ kc^3 cot qL - q^3 coth kc L ]  at itself,
 //                             and  X = the same with -1/sin qL, -1/sinh kc L at the other end
 //
-// (M, A, S are one another's by reciprocity, A from -B y''' + T y'). An end that resists turning gives the string a moment; a unit moment (over c)
-// does what two opposite forces close to the end do, so that all of its answers are slopes of M and A there:
+// (M, A, S are one another's by reciprocity, A from -B y''' + T y'). An end that resists turning gives the string a moment; a
+// unit moment (over c) does what two opposite forces close to the end do, so that all of its answers are slopes of M and A there:
 //
 //     velocity at d from the end:  s / (Z (1+2K)) [ sin q(L-d) / sin qL  -  sinh kc (L-d) / sinh kc L ]
 //     the end's own turning:       s / (Z (1+2K)) [ kc coth kc L  -  q cot qL ],       the other end's: s / (Z (1+2K)) [ q / sin qL - kc / sinh kc L ]
@@ -18,12 +18,12 @@
 //
 // Scatterers and ends close the loop:
 // a small linear system whose determinant vanishes at the poles. Newton from the pinned string's poles, strength raised in steps.
-// Loss enters k as in transmission.hpp. What it makes of the impedance is a matter of convention, and a heavy bead tells: with every mode
-// damped by itself, i w w_m / Q, the loss sits half in the tension and half in the mass, T (1 + i / 2Q), but for
+// Loss enters k as in transmission.hpp. What it makes of the impedance is a matter of convention, and a heavy bead tells: with
+// every mode damped by itself, i w w_m / Q, the loss sits half in the tension and half in the mass, T (1 + i / 2Q), but for
 //     sum_m phi_m^2 i w (i / 2Q) (w_m - w)^2 / (w_m^2 - w^2)^2  =  -1 / (2 pi Q Z)   at the load itself (twice that, times Z^2, at an end),
-// and what the ends feel of the damping, which the fit's psi takes up. Where the modes that are damped by themselves are those of the loaded
-// string, all that depends on the frequency does so on w (1 - i / 2Q), the load's impedance, too, and the last term is not there. What a string
-// and its bead do lies somewhere between (pluck_scene::loaded_loss).
+// and what the ends feel of the damping, which the fit's psi takes up. Where the modes that are damped by themselves are those of
+// the loaded string, all that depends on the frequency does so on w (1 - i / 2Q), the load's impedance, too, and the last term is
+// not there. What a string and its bead do lies somewhere between (pluck_scene::loaded_loss).
 //
 #pragma once
 
@@ -79,7 +79,8 @@ public:
   [[nodiscard]] complex mobility(double a, double b) const {
     const double low = std::min(a, b) * length_, high = (1 - std::max(a, b)) * length_, gap = length_ - low - high;
     const complex decay = (fading(gap) - fading(gap + 2 * low) - fading(gap + 2 * high)) / 2.0;
-    const complex m = s_ * plain::reciprocal(modulus_) * stiff_ * (sine_of(low) * sine_of(high) * plain::reciprocal(q_) - sine_ * decay * plain::reciprocal(kappa_));
+    const complex m = s_ * plain::reciprocal(modulus_) * stiff_ *
+                      (sine_of(low) * sine_of(high) * plain::reciprocal(q_) - sine_ * decay * plain::reciprocal(kappa_));
     return a == b ? m - own_loss_ * sine_ : m;
   }
   /// sin(qL) times the force on end 0 or 1 for a unit force at a.
@@ -89,13 +90,15 @@ public:
   }
   /// sin(qL) times the force (in Z) on an end per unit speed of the same end, and of the other end.
   [[nodiscard]] complex own_end() const {
-    return -modulus_ * kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * (kappa_ * kappa_ * kappa_ * cosine_ - q_ * q_ * q_ * sine_) - 2.0 * own_loss_ * sine_;
+    return -modulus_ * kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ *
+               (kappa_ * kappa_ * kappa_ * cosine_ - q_ * q_ * q_ * sine_) -
+           2.0 * own_loss_ * sine_;
   }
   [[nodiscard]] complex other_end() const {
     return modulus_ * kappa_ * q_ / (q_ * q_ + kappa_ * kappa_) * epsilon_ / s_ * kappa_ * kappa_ * kappa_;
   }
-  /// The answer to a unit moment on an end, sin(qL) times: velocity at a, over s (1/Z); the same end's turning and the other's, likewise; force on
-  /// the same end and on the other.
+  /// The answer to a unit moment on an end, sin(qL) times: velocity at a, over s (1/Z); the same end's turning and the other's,
+  /// likewise; force on the same end and on the other.
   [[nodiscard]] complex turning(int end, double a) const {
     const double here = (end == 0 ? a : 1 - a) * length_;
     return stiff_ * (sine_of(length_ - here) - sine_ * fading(here));
@@ -127,8 +130,8 @@ inline constexpr int most_loops = 10;
 
 /// The closed loop at one frequency: determinant, and the forces on the ends for a unit force at `position`.
 struct loop_response {
-  std::complex<double> determinant;                     ///< zero at the poles
-  std::array<std::complex<double>, 2> times_determinant; ///< end forces times the determinant
+  std::complex<double> determinant;                       ///< zero at the poles
+  std::array<std::complex<double>, 2> times_determinant;  ///< end forces times the determinant
 };
 
 namespace detail {
@@ -157,13 +160,17 @@ struct clamped_ends {
   [[nodiscard]] int operator[](Eigen::Index i) const { return end[static_cast<std::size_t>(i)]; }
 };
 
-/// Rows and columns of the ends that resist turning, after those of the others: (1 - clamping) M + clamping sqrt(B T) (turning / s) = 0.
-inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_at& string, const moving_ends& ends, std::complex<double> s, double strength) {
+/// Rows and columns of the ends that resist turning, after those of the others: (1 - clamping) M + clamping sqrt(B T) (turning /
+/// s) = 0.
+inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_at& string, const moving_ends& ends,
+                        std::complex<double> s, double strength) {
   const clamped_ends clamped(scene);
   const auto count = static_cast<Eigen::Index>(scene.scatterers.size()), first = count + ends.count;
   for (Eigen::Index c = 0; c < clamped.count; ++c) {
     const double clamping = scene.ends[static_cast<std::size_t>(clamped[c])].clamping, k = clamping * string.reach_s();
-    const auto end_force = [&](Eigen::Index m) { return ends[m] == clamped[c] ? string.own_end_by_moment() : string.other_end_by_moment(); };
+    const auto end_force = [&](Eigen::Index m) {
+      return ends[m] == clamped[c] ? string.own_end_by_moment() : string.other_end_by_moment();
+    };
     for (Eigen::Index j = 0; j < count; ++j) {
       const scatterer& on = scene.scatterers[static_cast<std::size_t>(j)];
       const std::complex<double> turning = string.turning(clamped[c], on.position);
@@ -179,9 +186,10 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
   }
 }
 
-/// sin(qL) times the loop's matrix: g_i + Z_i v_i = 0 for scatterers, u_m - Y F_m = 0 for ends (the string's velocity by u_m is by
-/// reciprocity its end force).
-[[nodiscard]] inline loop_matrix loop_of(const pluck_scene& scene, const string_at& string, const moving_ends& ends, std::complex<double> s, double strength) {
+/// sin(qL) times the loop's matrix: g_i + Z_i v_i = 0 for scatterers, u_m - Y F_m = 0 for ends (the string's velocity by u_m is
+/// by reciprocity its end force).
+[[nodiscard]] inline loop_matrix loop_of(const pluck_scene& scene, const string_at& string, const moving_ends& ends,
+                                         std::complex<double> s, double strength) {
   const auto count = static_cast<Eigen::Index>(scene.scatterers.size());
   const auto at = [&](Eigen::Index i) { return scene.scatterers[static_cast<std::size_t>(i)].position; };
   const auto size = count + ends.count + clamped_ends(scene).count;
@@ -214,7 +222,8 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
 }  // namespace detail
 
 /// The closed loop's determinant at one frequency. `strength` scales scatterers and the motion of the ends.
-[[nodiscard]] inline std::complex<double> loop_determinant(const pluck_scene& scene, std::complex<double> s, double strength = 1) {
+[[nodiscard]] inline std::complex<double> loop_determinant(const pluck_scene& scene, std::complex<double> s,
+                                                           double strength = 1) {
   const string_at string(scene, s);
   return detail::determinant_of(detail::loop_of(scene, string, detail::moving_ends(scene), s, strength), string.sine());
 }
@@ -239,14 +248,17 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
     for (int o = 0; o < 2; ++o) out(o, count + m) = o == ends[m] ? string.own_end() : string.other_end();
   }
   for (Eigen::Index c = 0; c < clamped.count; ++c) {
-    drive[count + ends.count + c] = -scene.ends[static_cast<std::size_t>(clamped[c])].clamping * string.reach_s() * string.turning(clamped[c], position);
-    for (int o = 0; o < 2; ++o) out(o, count + ends.count + c) = o == clamped[c] ? string.own_end_by_moment() : string.other_end_by_moment();
+    drive[count + ends.count + c] =
+        -scene.ends[static_cast<std::size_t>(clamped[c])].clamping * string.reach_s() * string.turning(clamped[c], position);
+    for (int o = 0; o < 2; ++o)
+      out(o, count + ends.count + c) = o == clamped[c] ? string.own_end_by_moment() : string.other_end_by_moment();
   }
   loop_response r{detail::determinant_of(A, string.sine()), {}};
   if (n == 1) drive *= plain::reciprocal(A(0, 0));
   else drive = A.partialPivLu().solve(drive).eval();
   for (int e = 0; e < 2; ++e)
-    r.times_determinant[static_cast<std::size_t>(e)] = r.determinant * plain::reciprocal(string.sine()) * (string.end_force(e, position) + (out.row(e) * drive)(0));
+    r.times_determinant[static_cast<std::size_t>(e)] =
+        r.determinant * plain::reciprocal(string.sine()) * (string.end_force(e, position) + (out.row(e) * drive)(0));
   return r;
 }
 

@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Where to begin with effects so strong that the declared string, fitted to them, is far off: what such a fit leaves says little of
-// them. A support's mode comes from the fit along complex frequencies; a heavy load from the first period and a half, over which
-// the declared string, not fitted, still holds but for the load's own echoes.
+// Where to begin with effects so strong that the declared string, fitted to them, is far off: what such a fit leaves says little
+// of them. A support's mode comes from the fit along complex frequencies; a heavy load from the first period and a half, over
+// which the declared string, not fitted, still holds but for the load's own echoes.
 //
 #pragma once
 
@@ -19,20 +19,25 @@ struct found_start {
   Eigen::VectorXd value;
 };
 
-inline Eigen::VectorXd extended(const pluck_layout& layout, const Eigen::VectorXd& value, const pluck_effect& e, const std::vector<double>& start) {
+inline Eigen::VectorXd extended(const pluck_layout& layout, const Eigen::VectorXd& value, const pluck_effect& e,
+                                const std::vector<double>& start) {
   Eigen::VectorXd v(value.size() + static_cast<Eigen::Index>(start.size()));
   v.head(value.size()) = value;
-  for (std::size_t i = 0; i < start.size(); ++i) v[value.size() + static_cast<Eigen::Index>(i)] = to_fitted(e.parameters[i], start[i]);
+  for (std::size_t i = 0; i < start.size(); ++i)
+    v[value.size() + static_cast<Eigen::Index>(i)] = to_fitted(e.parameters[i], start[i]);
   if (e.rebase) e.rebase(layout, v);
   return v;
 }
 
 /// What an effect would gain as it stands: on the parabola through 0 and the best mix.
-inline double gain_as_it_stands(const score_result& s) { return s.mix > 0 ? std::max(0.0, s.gain * (2 / s.mix - 1 / (s.mix * s.mix))) : 0.0; }
+inline double gain_as_it_stands(const score_result& s) {
+  return s.mix > 0 ? std::max(0.0, s.gain * (2 / s.mix - 1 / (s.mix * s.mix))) : 0.0;
+}
 
-/// A support's mode as the fit along a line of complex frequencies sees it (calibrate/end_fit.hpp), which no strong coupling leads
-/// astray; for either end, whichever it chose. It knows of no other effect.
-inline void add_support_starts(const scene_data& data, const std::vector<pluck_effect>& catalogue, std::vector<found_start>& out) {
+/// A support's mode as the fit along a line of complex frequencies sees it (calibrate/end_fit.hpp), which no strong coupling
+/// leads astray; for either end, whichever it chose. It knows of no other effect.
+inline void add_support_starts(const scene_data& data, const std::vector<pluck_effect>& catalogue,
+                               std::vector<found_start>& out) {
   const auto supports = [](const pluck_effect& e) { return e.name == "support-resonance"; };
   if (std::none_of(catalogue.begin(), catalogue.end(), supports)) return;
   end_options one;
@@ -65,8 +70,10 @@ inline std::optional<Eigen::VectorXd> declared_values(const scene_data& data) {
 }
 
 /// Masses from a thirtieth of the string's to a third of it, each at the place where it explains most of the first echoes.
-inline void add_load_starts(const scene_data& data, const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise, std::vector<found_start>& out) {
-  const auto load = std::find_if(catalogue.begin(), catalogue.end(), [](const pluck_effect& e) { return e.name == "point-mass"; });
+inline void add_load_starts(const scene_data& data, const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise,
+                            std::vector<found_start>& out) {
+  const auto load =
+      std::find_if(catalogue.begin(), catalogue.end(), [](const pluck_effect& e) { return e.name == "point-mass"; });
   const auto value = load == catalogue.end() ? std::nullopt : declared_values(data);
   if (!value) return;
   pluck_scene probe;
@@ -90,7 +97,8 @@ inline void add_load_starts(const scene_data& data, const std::vector<pluck_effe
 }
 
 /// `declared`: the fit of the declared model. A load is only sought in this way where that leaves much.
-inline std::vector<found_start> strong_starts(const scene_data& data, const scene_fit& declared, const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise) {
+inline std::vector<found_start> strong_starts(const scene_data& data, const scene_fit& declared,
+                                              const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise) {
   constexpr double much = 0.3;
   std::vector<found_start> out;
   add_support_starts(data, catalogue, out);

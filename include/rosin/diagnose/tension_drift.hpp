@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Did the tension change between the plucks and the strokes? Then both delays are stretched alike, d tau / tau = -dT / (2 T), and the
-// two versions of the force part (docs/explain/catalogue.md). One number for all takes; how well a moved contact
+// Did the tension change between the plucks and the strokes? Then both delays are stretched alike, d tau / tau = -dT / (2 T), and
+// the two versions of the force part (docs/explain/catalogue.md). One number for all takes; how well a moved contact
 // would do instead is tried beside it.
 //
 #pragma once
@@ -20,9 +20,9 @@ struct bowed_recording {
 };
 
 struct tension_drift {
-  double relative = 0, sd = 0;    ///< tension in the strokes / in the plucks - 1
+  double relative = 0, sd = 0;                                        ///< tension in the strokes / in the plucks - 1
   double delta_before = 0, delta_after = 0, delta_moved_contact = 0;  ///< Eq. (12), rms over the takes
-  double scatter = 0;             ///< between takes, of `relative`
+  double scatter = 0;                                                 ///< between takes, of `relative`
 };
 
 /// The calibration at another tension: delays, stiffness (epsilon = B m / T^2) and impedance follow.
@@ -59,7 +59,8 @@ template <class Physics = full_physics>
     double relative = 0, sd = 1;
     fine_tuning last{c};
     double stretch = 1;
-    for (int round = 0; round < 10 && std::abs(stretch) > 1e-7; ++round) {  // tuning stretches delays; the stiffness follows from round to round
+    for (int round = 0; round < 10 && std::abs(stretch) > 1e-7;
+         ++round) {  // tuning stretches delays; the stiffness follows from round to round
       const calibration here = at_tension(c, relative);
       last = fine_tune<Physics>(here, t.near_N, t.far_N, limits, rate_Hz, {1e-2, 1e-9, 1e-9});
       if (round == 0) out.delta_before += last.delta_before * last.delta_before;

@@ -123,7 +123,8 @@ private:
   [[nodiscard]] memory recall(const kernel& state, const answers& a) const noexcept {
     static_assert(states % 3 == 0);
     T one = -a.risen * rise_, two = 0, three = 0;  // so that no sum waits for the one before
-    for (std::size_t j = 0; j < states; j += 3) one += a.decay[j] * state[j], two += a.decay[j + 1] * state[j + 1], three += a.decay[j + 2] * state[j + 2];
+    for (std::size_t j = 0; j < states; j += 3)
+      one += a.decay[j] * state[j], two += a.decay[j + 1] * state[j + 1], three += a.decay[j + 2] * state[j + 2];
     return {one + two + three, a.now};
   }
   void remember(kernel& state, T rise, const answers& a) const noexcept {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Where the string sticks to the rod and where it slips, from the motion alone. While it sticks, the velocity of its surface
-// relative to the rod stays at one level: 0, but for errors of the scale. A slip leads it to one side only, against the way of the
-// rod. So the level is the median of what lies near it; what lies beyond it on the side to which nothing slips is the fluctuation
-// that sticking has here (noise, the ringing of a band limit, torsion that was not taken into account); and a few
+// relative to the rod stays at one level: 0, but for errors of the scale. A slip leads it to one side only, against the way of
+// the rod. So the level is the median of what lies near it; what lies beyond it on the side to which nothing slips is the
+// fluctuation that sticking has here (noise, the ringing of a band limit, torsion that was not taken into account); and a few
 // times that, within bounds set by the rod's speed, tells the two apart. Hysteresis keeps one slip in one piece.
 //
 // A band limit smears a slip into its neighbourhood; interior() leaves out what its kernel can reach.
@@ -28,10 +28,10 @@ struct sample_interval {
 
 struct contact_phases {
   std::vector<sample_interval> sticks, slips;  ///< alternate; together with what is unknown they cover the record
-  double level_m_s = 0;        ///< relative velocity while sticking: what the scales' errors leave of zero
-  double fluctuation_m_s = 0;  ///< standard deviation of sticking about that level, robust
-  double threshold_m_s = 0;    ///< beyond this distance from the level it slips
-  std::size_t known = 0;       ///< samples that are numbers
+  double level_m_s = 0;                        ///< relative velocity while sticking: what the scales' errors leave of zero
+  double fluctuation_m_s = 0;                  ///< standard deviation of sticking about that level, robust
+  double threshold_m_s = 0;                    ///< beyond this distance from the level it slips
+  std::size_t known = 0;                       ///< samples that are numbers
 
   /// Share of the known samples that stick.
   [[nodiscard]] double sticking() const noexcept {
@@ -52,7 +52,9 @@ namespace detail {
 inline void find_level(std::vector<double> values, double way, double speed, const phase_options& options, contact_phases& p) {
   for (double& v : values) v *= way;
   std::sort(values.begin(), values.end());
-  const auto first_above = [&](double x) { return static_cast<std::size_t>(std::upper_bound(values.begin(), values.end(), x) - values.begin()); };
+  const auto first_above = [&](double x) {
+    return static_cast<std::size_t>(std::upper_bound(values.begin(), values.end(), x) - values.begin());
+  };
   double level = 0;
   for (int pass = 0; pass < 6; ++pass) {
     const std::size_t above = first_above(level), count = values.size() - above;
@@ -89,7 +91,8 @@ inline void find_level(std::vector<double> values, double way, double speed, con
 }
 
 /// 1 for each sample that lies at least `margin` samples inside one of the intervals.
-[[nodiscard]] inline std::vector<char> interior(const std::vector<sample_interval>& intervals, std::size_t samples, std::size_t margin) {
+[[nodiscard]] inline std::vector<char> interior(const std::vector<sample_interval>& intervals, std::size_t samples,
+                                                std::size_t margin) {
   std::vector<char> inside(samples, 0);
   for (const auto& s : intervals)
     for (std::size_t i = s.begin + margin; i + margin < s.end; ++i) inside[i] = 1;

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // What a stroke shows of the law of friction while it slips: force against slip speed, or against what the law remembers.
-// A law predicts f = N mu(x) from one number x at each instant: the slip speed (velocity curve), or the temperature that the slips so
-// far have left (thermal law). Whatever mu is, it is smooth; so both are fitted with the same number of smooth
-// functions of x, and what is left over says which x the force follows. Nothing runs freely: the law is driven by the reconstructed
-// motion, which it cannot leave.
+// A law predicts f = N mu(x) from one number x at each instant: the slip speed (velocity curve), or the temperature that the
+// slips so far have left (thermal law). Whatever mu is, it is smooth; so both are fitted with the same number of smooth
+// functions of x, and what is left over says which x the force follows. Nothing runs freely: the law is driven by the
+// reconstructed motion, which it cannot leave.
 //
 // Force and motion are limited to the same band, the law is not: f = N mu(x) is exact for slow changes only. Samples within a
 // kernel's reach of sticking are of use to robust estimates alone.
@@ -29,8 +29,9 @@ struct slip_samples {
 };
 
 /// Samples `margin` inside the slips. The arrays (force, surface less rod) have one length.
-[[nodiscard]] inline slip_samples slips_of(std::span<const double> force_N, std::span<const double> relative_m_s, const contact_phases& phases,
-                                           double rod_speed_m_s, double normal_N, std::size_t begin, std::size_t margin) {
+[[nodiscard]] inline slip_samples slips_of(std::span<const double> force_N, std::span<const double> relative_m_s,
+                                           const contact_phases& phases, double rod_speed_m_s, double normal_N, std::size_t begin,
+                                           std::size_t margin) {
   slip_samples out;
   const double way = rod_speed_m_s < 0 ? -1.0 : 1.0;
   const auto inside = interior(phases.slips, relative_m_s.size(), margin);
@@ -47,16 +48,18 @@ struct slip_samples {
   return out;
 }
 
-/// Samples that stand in for what happened before the first slip that is known: as many as lie before it, from there on. A contact that
-/// was taken to be cold there would need several periods to be as warm as it is.
+/// Samples that stand in for what happened before the first slip that is known: as many as lie before it, from there on. A
+/// contact that was taken to be cold there would need several periods to be as warm as it is.
 [[nodiscard]] inline std::pair<std::size_t, std::size_t> before_the_slips(const contact_phases& phases, std::size_t samples) {
   const std::size_t first = phases.slips.empty() ? 0 : phases.slips.front().begin;
   return {first, std::min(samples, 2 * first)};
 }
 
-/// Temperature of the contact at every sample (above its surroundings), heated by the reconstructed force along the reconstructed slips.
-[[nodiscard]] inline std::vector<double> temperature_along(std::span<const double> force_N, std::span<const double> relative_m_s, const contact_phases& phases,
-                                                           double normal_N, double rate_Hz, const contact_heat_parameters<double>& heat) {
+/// Temperature of the contact at every sample (above its surroundings), heated by the reconstructed force along the reconstructed
+/// slips.
+[[nodiscard]] inline std::vector<double> temperature_along(std::span<const double> force_N, std::span<const double> relative_m_s,
+                                                           const contact_phases& phases, double normal_N, double rate_Hz,
+                                                           const contact_heat_parameters<double>& heat) {
   std::vector<double> rise(relative_m_s.size(), 0.0);
   const auto slipping = interior(phases.slips, relative_m_s.size(), 0);
   contact_heat<double> contact(heat);

@@ -1,10 +1,11 @@
 // tier: freestanding
 // SPDX-License-Identifier: MIT
 //
-// Sticks or slips, sample by sample, for whoever watches while the bow moves. A slip throws the string against the way of the rod, so
-// it begins where the string falls behind the rod by more than its speed and a little, and is over where it falls behind by
-// less than half of that: hysteresis keeps one slip in one piece. (The string's centre is what the reconstruction gives; while it
-// sticks, it still swings by rolling on the rod, by up to the rod's speed.) slip_phases.hpp decides with more care, afterwards.
+// Sticks or slips, sample by sample, for whoever watches while the bow moves. A slip throws the string against the way of the
+// rod, so it begins where the string falls behind the rod by more than its speed and a little, and is over where it falls behind
+// by less than half of that: hysteresis keeps one slip in one piece. (The string's centre is what the reconstruction gives; while
+// it sticks, it still swings by rolling on the rod, by up to the rod's speed.) slip_phases.hpp decides with more care,
+// afterwards.
 //
 #pragma once
 

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A serial line, or whatever a file descriptor of a POSIX system can be (a pseudo-terminal, a pipe): opened raw, so that no byte is
-// changed on its way, read with patience, written completely or not at all.
+// A serial line, or whatever a file descriptor of a POSIX system can be (a pseudo-terminal, a pipe): opened raw, so that no byte
+// is changed on its way, read with patience, written completely or not at all.
 //
 #pragma once
 
@@ -51,9 +51,18 @@ private:
 
 /// Speeds that termios knows by name; nothing for others (USB devices do not care).
 [[nodiscard]] inline std::optional<speed_t> line_speed(int baud) noexcept {
-  constexpr std::array<std::pair<int, speed_t>, 12> known{{{9600, B9600}, {19200, B19200}, {38400, B38400}, {57600, B57600},
-      {115200, B115200}, {230400, B230400}, {460800, B460800}, {921600, B921600}, {1000000, B1000000}, {2000000, B2000000},
-      {3000000, B3000000}, {4000000, B4000000}}};
+  constexpr std::array<std::pair<int, speed_t>, 12> known{{{9600, B9600},
+                                                           {19200, B19200},
+                                                           {38400, B38400},
+                                                           {57600, B57600},
+                                                           {115200, B115200},
+                                                           {230400, B230400},
+                                                           {460800, B460800},
+                                                           {921600, B921600},
+                                                           {1000000, B1000000},
+                                                           {2000000, B2000000},
+                                                           {3000000, B3000000},
+                                                           {4000000, B4000000}}};
   for (const auto& [rate, code] : known)
     if (rate == baud) return code;
   return std::nullopt;
@@ -64,7 +73,7 @@ private:
 /// What a read of the line gave.
 struct link_read {
   std::size_t bytes = 0;
-  bool gone = false;     ///< the other end has closed, or the device was pulled
+  bool gone = false;  ///< the other end has closed, or the device was pulled
   std::string problem;
 };
 
@@ -103,7 +112,8 @@ public:
   }
 
   /// All of it; waits where the other end is slow, for at most `patience` without progress.
-  [[nodiscard]] std::optional<failure> write(std::string_view bytes, std::chrono::milliseconds patience = std::chrono::seconds{2}) const {
+  [[nodiscard]] std::optional<failure> write(std::string_view bytes,
+                                             std::chrono::milliseconds patience = std::chrono::seconds{2}) const {
     while (!bytes.empty()) {
       pollfd wait{fd_.get(), POLLOUT, 0};
       const int ready = ::poll(&wait, 1, static_cast<int>(patience.count()));

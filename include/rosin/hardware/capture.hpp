@@ -23,8 +23,8 @@ template <FrameSource Source>
 class capture {
 public:
   explicit capture(Source source, double buffer_s = 10)
-      : format_{source.format()},
-        ring_{static_cast<std::size_t>(format_.channels), static_cast<std::size_t>(buffer_s * format_.sample_rate_Hz) + 1},
+      : format_{source.format()}, ring_{static_cast<std::size_t>(format_.channels),
+                                        static_cast<std::size_t>(buffer_s * format_.sample_rate_Hz) + 1},
         thread_{[this, from = std::move(source)](const std::stop_token& stop) mutable { run(from, stop); }} {}
   capture(const capture&) = delete;
   capture& operator=(const capture&) = delete;
@@ -48,7 +48,9 @@ public:
     }
   }
   /// The fullest that the ring ever was, as a fraction.
-  [[nodiscard]] double fullest() const noexcept { return static_cast<double>(most_.load(std::memory_order_relaxed)) / static_cast<double>(ring_.capacity()); }
+  [[nodiscard]] double fullest() const noexcept {
+    return static_cast<double>(most_.load(std::memory_order_relaxed)) / static_cast<double>(ring_.capacity());
+  }
 
 private:
   void run(Source& from, const std::stop_token& stop) {
@@ -58,7 +60,8 @@ private:
       const frame_read got = from.read(block, std::chrono::milliseconds{50});
       if (!got.problem.empty()) put_problem(got.problem);
       ring_.lost(got.lost);
-      while (!format_.live && ring_.room() < got.frames && !stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds{2});
+      while (!format_.live && ring_.room() < got.frames && !stop.stop_requested())
+        std::this_thread::sleep_for(std::chrono::milliseconds{2});
       if (got.frames > 0 && !ring_.write(got.frames, [&](std::size_t i, std::size_t c) { return block[i * width + c]; }))
         put_problem("overrun: nobody took the frames in time");
       most_.store(std::max(most_.load(std::memory_order_relaxed), ring_.size()), std::memory_order_relaxed);

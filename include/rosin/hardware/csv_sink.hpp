@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Frames as lines of text while they come: a column for the time and one for each channel, an empty field where a value is
-// unknown (NaN). Into a file, or a descriptor that is open already (standard output, a pipe). What has been written is handed on after
-// each call, so whoever follows the file or reads the pipe is never late.
+// unknown (NaN). Into a file, or a descriptor that is open already (standard output, a pipe). What has been written is handed on
+// after each call, so whoever follows the file or reads the pipe is never late.
 //
 #pragma once
 
@@ -20,13 +20,15 @@ namespace rosin {
 /// A FrameSink.
 class csv_sink {
 public:
-  [[nodiscard]] static outcome<csv_sink> create(const std::string& path, double rate_Hz, const std::vector<std::string>& columns) {
+  [[nodiscard]] static outcome<csv_sink> create(const std::string& path, double rate_Hz,
+                                                const std::vector<std::string>& columns) {
     byte_link file{::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), path};
     if (file.fd() < 0) return failure{path + ": " + std::strerror(errno)};
     return csv_sink{std::move(file), rate_Hz, columns};
   }
   /// Takes the descriptor over.
-  csv_sink(byte_link to, double rate_Hz, const std::vector<std::string>& columns) : to_{std::move(to)}, rate_Hz_{rate_Hz}, width_{columns.size()} {
+  csv_sink(byte_link to, double rate_Hz, const std::vector<std::string>& columns)
+      : to_{std::move(to)}, rate_Hz_{rate_Hz}, width_{columns.size()} {
     text_ = "time_s";
     for (const auto& name : columns) text_ += "," + name;
     text_ += '\n';

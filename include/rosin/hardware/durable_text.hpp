@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A small file that is replaced whole: after a crash or a power cut there is the old one or the new one, never a part. The new text
-// is on the disk before it takes the name, and the name before this returns.
+// A small file that is replaced whole: after a crash or a power cut there is the old one or the new one, never a part. The new
+// text is on the disk before it takes the name, and the name before this returns.
 //
 #pragma once
 

@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Between the thread that must never wait (a driver's callback) and the one that may (a disk): a ring of frames for one writer and
-// one reader, without locks. When it is full the writer drops and counts, and the reader learns how many frames are missing at
-// the very place where they are missing.
+// Between the thread that must never wait (a driver's callback) and the one that may (a disk): a ring of frames for one writer
+// and one reader, without locks. When it is full the writer drops and counts, and the reader learns how many frames are missing
+// at the very place where they are missing.
 //
 #pragma once
 
@@ -21,12 +21,14 @@ template <class T>
 class frame_ring {
 public:
   frame_ring(std::size_t channels, std::size_t frames)
-      : channels_{channels}, frames_{frames}, samples_{std::make_unique<T[]>(channels * frames)},
-        gaps_{std::make_unique<gap[]>(gap_room)} {}
+      : channels_{channels}, frames_{frames}, samples_{std::make_unique<T[]>(channels * frames)}, gaps_{std::make_unique<gap[]>(
+                                                                                                      gap_room)} {}
 
   [[nodiscard]] std::size_t channels() const noexcept { return channels_; }
   [[nodiscard]] std::size_t capacity() const noexcept { return frames_; }
-  [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(written_.load(std::memory_order_acquire) - read_.load(std::memory_order_acquire)); }
+  [[nodiscard]] std::size_t size() const noexcept {
+    return static_cast<std::size_t>(written_.load(std::memory_order_acquire) - read_.load(std::memory_order_acquire));
+  }
 
   /// Writer: room for so many frames.
   [[nodiscard]] std::size_t room() const noexcept { return frames_ - size(); }
@@ -69,7 +71,8 @@ public:
       if (g.before == begin) {
         out.lost = g.frames;
         gaps_read_.store(first_gap + 1, std::memory_order_release);
-        if (first_gap + 1 != gaps_written_.load(std::memory_order_acquire)) until = std::min(until, gaps_[(first_gap + 1) % gap_room].before);
+        if (first_gap + 1 != gaps_written_.load(std::memory_order_acquire))
+          until = std::min(until, gaps_[(first_gap + 1) % gap_room].before);
       } else {
         until = std::min(until, g.before);
       }

@@ -36,16 +36,17 @@ struct frame_format {
 
 /// What one call of read() gave.
 struct frame_read {
-  std::size_t frames = 0;        ///< now in the block
-  std::uint64_t lost = 0;        ///< frames known to be missing directly before these
-  bool ended = false;            ///< nothing will follow
-  std::string problem;           ///< why it ended early, or what was odd (a checksum, a restart); empty: all is well
+  std::size_t frames = 0;  ///< now in the block
+  std::uint64_t lost = 0;  ///< frames known to be missing directly before these
+  bool ended = false;      ///< nothing will follow
+  std::string problem;     ///< why it ended early, or what was odd (a checksum, a restart); empty: all is well
 };
 
 /// read() fills `interleaved` with whole frames, waiting for at most `patience` for the first of them: no frame and not ended
 /// means that none came in time. One thread reads.
 template <class S>
-concept FrameSource = std::movable<S> && requires(S source, const S& same, std::span<double> interleaved, std::chrono::milliseconds patience) {
+concept FrameSource = std::movable<S> &&
+    requires(S source, const S& same, std::span<double> interleaved, std::chrono::milliseconds patience) {
   { same.format() } -> std::convertible_to<frame_format>;
   { source.read(interleaved, patience) } -> std::same_as<frame_read>;
 };

@@ -70,16 +70,37 @@ template <std::size_t N>
 
 /// In words, for people; nothing where the line is no error or alarm.
 [[nodiscard]] inline std::optional<std::string> grbl_error(std::string_view line) {
-  static constexpr std::array<std::string_view, 18> words{"unknown", "no letter", "no number", "unknown setting", "negative value",
-      "homing is not enabled", "step pulse too short", "settings could not be read", "only while idle", "locked by an alarm or a motion",
-      "soft limits need homing", "line too long", "step rate too high", "door open", "line too long to store", "jog beyond the travel",
-      "not a jog command", "laser mode needs PWM"};
+  static constexpr std::array<std::string_view, 18> words{"unknown",
+                                                          "no letter",
+                                                          "no number",
+                                                          "unknown setting",
+                                                          "negative value",
+                                                          "homing is not enabled",
+                                                          "step pulse too short",
+                                                          "settings could not be read",
+                                                          "only while idle",
+                                                          "locked by an alarm or a motion",
+                                                          "soft limits need homing",
+                                                          "line too long",
+                                                          "step rate too high",
+                                                          "door open",
+                                                          "line too long to store",
+                                                          "jog beyond the travel",
+                                                          "not a jog command",
+                                                          "laser mode needs PWM"};
   return line.starts_with("error:") ? std::optional{detail::meaning(line, "error:", words)} : std::nullopt;
 }
 [[nodiscard]] inline std::optional<std::string> grbl_alarm(std::string_view line) {
-  static constexpr std::array<std::string_view, 10> words{"unknown", "hard limit: the sled ran into its switch, its position is lost",
-      "soft limit: the motion would leave the travel", "reset while moving: the position is lost", "probe fail", "probe fail",
-      "homing fail: reset", "homing fail: door", "homing fail: switch still pressed", "homing fail: no switch found"};
+  static constexpr std::array<std::string_view, 10> words{"unknown",
+                                                          "hard limit: the sled ran into its switch, its position is lost",
+                                                          "soft limit: the motion would leave the travel",
+                                                          "reset while moving: the position is lost",
+                                                          "probe fail",
+                                                          "probe fail",
+                                                          "homing fail: reset",
+                                                          "homing fail: door",
+                                                          "homing fail: switch still pressed",
+                                                          "homing fail: no switch found"};
   return line.starts_with("ALARM:") ? std::optional{detail::meaning(line, "ALARM:", words)} : std::nullopt;
 }
 

@@ -6,7 +6,8 @@
 //
 //     v(t) = min(a t, v, a (T - t))
 //
-// A feed hold slows down with the same acceleration. The machine's coordinate runs from -travel (the far end) to 0, as GRBL's does.
+// A feed hold slows down with the same acceleration. The machine's coordinate runs from -travel (the far end) to 0, as GRBL's
+// does.
 //
 #pragma once
 
@@ -74,7 +75,10 @@ private:
     return settings[21] == 1 && position_mm_ > switch_mm;
   }
   [[nodiscard]] std::string report() const {
-    const char* state = alarm_ ? "Alarm" : hold_ && left_mm_ != 0 ? (speed_ > 0 ? "Hold:1" : "Hold:0") : left_mm_ != 0 ? "Run" : "Idle";
+    const char* state = alarm_                   ? "Alarm"
+                        : hold_ && left_mm_ != 0 ? (speed_ > 0 ? "Hold:1" : "Hold:0")
+                        : left_mm_ != 0          ? "Run"
+                                                 : "Idle";
     std::array<char, 96> text{};
     std::snprintf(text.data(), text.size(), "<%s|MPos:%.3f,0.000,0.000|FS:%.0f,0>\r\n", state, position_mm_, speed_ * 60);
     return text.data();
@@ -85,7 +89,8 @@ private:
     hold_ = false;
     line_.clear();
     alarm_ = alarm_ || fast;
-    return std::string{fast ? "ALARM:3\r\n" : ""} + "\r\nGrbl 1.1h ['$' for help]\r\n" + (alarm_ ? "[MSG:'$H'|'$X' to unlock]\r\n" : "");
+    return std::string{fast ? "ALARM:3\r\n" : ""} + "\r\nGrbl 1.1h ['$' for help]\r\n" +
+           (alarm_ ? "[MSG:'$H'|'$X' to unlock]\r\n" : "");
   }
   [[nodiscard]] std::string execute(const std::string& line) {
     if (line.empty()) return "ok\r\n";
@@ -134,7 +139,8 @@ private:
     }
     if (feed <= 0) return "error:22\r\n";
     const double to = position_mm_ + left_mm_ + x;
-    if (settings[20] == 1 && (to > 1e-6 || to < -settings[130] - 1e-6)) return alarm_ = true, "ALARM:2\r\n[MSG:Reset to continue]\r\n";
+    if (settings[20] == 1 && (to > 1e-6 || to < -settings[130] - 1e-6))
+      return alarm_ = true, "ALARM:2\r\n[MSG:Reset to continue]\r\n";
     left_mm_ += x;
     feed_ = std::min(feed, settings[110]) / 60;
     ++strokes_;

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// The sled, where its driver understands G-code in GRBL's dialect (version 1.1): one axis, X, in millimetres. A line is answered by
-// "ok", "error:N" or "ALARM:N"; single bytes act at once, also while the sled moves:
+// The sled, where its driver understands G-code in GRBL's dialect (version 1.1): one axis, X, in millimetres. A line is answered
+// by "ok", "error:N" or "ALARM:N"; single bytes act at once, also while the sled moves:
 //
 //     ?  status report     !  feed hold     ~  go on     0x18  reset: the end of all motion
 //
@@ -42,14 +42,17 @@ public:
     if (!(way.speed_m_s > 0) || !(way.acceleration_m_s2 > 0) || !std::isfinite(way.distance_m) || way.distance_m == 0)
       return failure{link_.name() + ": a stroke needs a distance, and a speed and an acceleration above zero"};
     if (way.steady_m() < 0)
-      return failure{link_.name() + ": a stroke of " + figure(way.distance_m * 1e3) + " mm never reaches " + figure(way.speed_m_s) + " m/s at " + figure(way.acceleration_m_s2) + " m/s2"};
+      return failure{link_.name() + ": a stroke of " + figure(way.distance_m * 1e3) + " mm never reaches " +
+                     figure(way.speed_m_s) + " m/s at " + figure(way.acceleration_m_s2) + " m/s2"};
     if (mm_min > setting(110)) return refusal("a speed", mm_min, setting(110), "mm/min");
     const auto now = status();
     if (!now) return failure{now.error()};
-    if (now->state != motion_state::idle) return failure{link_.name() + ": the sled is not ready" + (now->reason.empty() ? "" : ": " + now->reason)};
+    if (now->state != motion_state::idle)
+      return failure{link_.name() + ": the sled is not ready" + (now->reason.empty() ? "" : ": " + now->reason)};
     const double to_mm = (now->position_m + way.distance_m) * 1e3;
     if (setting(20) == 1 && (to_mm > 0.0005 || to_mm < -setting(130) - 0.0005))
-      return failure{link_.name() + ": the stroke would end at " + figure(to_mm) + " mm, outside of " + figure(-setting(130)) + " to 0 mm"};
+      return failure{link_.name() + ": the stroke would end at " + figure(to_mm) + " mm, outside of " + figure(-setting(130)) +
+                     " to 0 mm"};
     return std::nullopt;
   }
   [[nodiscard]] std::optional<failure> start(const stroke& way) {
@@ -120,7 +123,8 @@ private:
     return text.data();
   }
   [[nodiscard]] failure refusal(const std::string& what, double asked, double limit, const char* unit) const {
-    return failure{link_.name() + ": " + what + " of " + figure(asked) + " " + unit + " is beyond the sled's " + figure(limit) + " " + unit};
+    return failure{link_.name() + ": " + what + " of " + figure(asked) + " " + unit + " is beyond the sled's " + figure(limit) +
+                   " " + unit};
   }
 
   [[nodiscard]] outcome<std::string> next_line() {
@@ -138,7 +142,8 @@ private:
       text_.append(reinterpret_cast<const char*>(bytes.data()), got.bytes);
       if (got.gone) return failure{got.problem};
       if (text_.size() > 4096) return failure{link_.name() + ": this is no GRBL"};
-      if (got.bytes == 0 && std::chrono::steady_clock::now() > deadline) return failure{link_.name() + ": the sled does not answer"};
+      if (got.bytes == 0 && std::chrono::steady_clock::now() > deadline)
+        return failure{link_.name() + ": the sled does not answer"};
     }
   }
   /// Alarms and settings are told between the lines.

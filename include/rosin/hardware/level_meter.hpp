@@ -15,8 +15,8 @@
 namespace rosin {
 
 struct channel_level {
-  double peak = 0, rms = 0;      ///< fractions of full scale
-  std::uint64_t clipped = 0;     ///< samples at full scale, from the beginning
+  double peak = 0, rms = 0;   ///< fractions of full scale
+  std::uint64_t clipped = 0;  ///< samples at full scale, from the beginning
 };
 
 class level_meter {

@@ -16,16 +16,16 @@
 namespace rosin {
 
 struct trigger_settings {
-  double threshold = 0;      ///< fraction of full scale; 0: triggered from the beginning
-  double before_s = 0.1;     ///< what is kept of the time before
-  double follows_s = 0.02;   ///< time constant of the mean
+  double threshold = 0;     ///< fraction of full scale; 0: triggered from the beginning
+  double before_s = 0.1;    ///< what is kept of the time before
+  double follows_s = 0.02;  ///< time constant of the mean
 };
 
 class level_trigger {
 public:
   level_trigger(const frame_format& f, const trigger_settings& s)
-      : settings_{s}, width_{static_cast<std::size_t>(f.channels)}, mean_(width_),
-        room_{width_ * static_cast<std::size_t>(std::lround(s.before_s * f.sample_rate_Hz))},
+      : settings_{s}, width_{static_cast<std::size_t>(f.channels)},
+        mean_(width_), room_{width_ * static_cast<std::size_t>(std::lround(s.before_s * f.sample_rate_Hz))},
         follow_{1 - std::exp(-1 / (s.follows_s * f.sample_rate_Hz))},
         settling_{static_cast<std::uint64_t>(3 * s.follows_s * f.sample_rate_Hz)}, fired_{!(s.threshold > 0)} {}
 

@@ -30,13 +30,16 @@ public:
     if (given_ == 0) start_ = now;
     const frame_format is = from_.format();
     const auto due = static_cast<std::uint64_t>(seconds{now - start_}.count() * is.sample_rate_Hz * faster_);
-    const std::size_t width = static_cast<std::size_t>(is.channels), wanted = std::max<std::size_t>(1, std::min(interleaved.size() / width, static_cast<std::size_t>(is.sample_rate_Hz / 1000)));
+    const std::size_t width = static_cast<std::size_t>(is.channels),
+                      wanted = std::max<std::size_t>(
+                          1, std::min(interleaved.size() / width, static_cast<std::size_t>(is.sample_rate_Hz / 1000)));
     if (due < given_ + wanted) {
       const seconds wait{static_cast<double>(given_ + wanted - due) / (is.sample_rate_Hz * faster_)};
       std::this_thread::sleep_for(std::min<seconds>(wait, patience));
       if (wait > patience) return {};
     }
-    const std::size_t most = std::min<std::size_t>(interleaved.size() / width, std::max<std::uint64_t>(wanted, due > given_ ? due - given_ : 0));
+    const std::size_t most =
+        std::min<std::size_t>(interleaved.size() / width, std::max<std::uint64_t>(wanted, due > given_ ? due - given_ : 0));
     frame_read out = from_.read(interleaved.first(most * width), patience);
     given_ += out.frames;
     return out;

@@ -24,8 +24,8 @@ struct packet_counts {
 /// Frames of one packet.
 struct decoded_packet {
   frame_format format;
-  std::uint64_t lost = 0;   ///< frames missing before it
-  bool restarted = false;   ///< the device started anew before it: how much is missing, nobody knows
+  std::uint64_t lost = 0;  ///< frames missing before it
+  bool restarted = false;  ///< the device started anew before it: how much is missing, nobody knows
   std::vector<double> samples;
 };
 

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A serial line without a cable: what one program writes to the pair's one side, another that has opened path() reads. So a device
-// can be played by a program, and the rest does not know.
+// A serial line without a cable: what one program writes to the pair's one side, another that has opened path() reads. So a
+// device can be played by a program, and the rest does not know.
 //
 #pragma once
 
@@ -33,7 +33,8 @@ public:
   [[nodiscard]] const byte_link& device() const noexcept { return device_; }
 
 private:
-  pseudo_terminal(byte_link device, byte_link kept, std::string path) : device_{std::move(device)}, kept_{std::move(kept)}, path_{std::move(path)} {}
+  pseudo_terminal(byte_link device, byte_link kept, std::string path)
+      : device_{std::move(device)}, kept_{std::move(kept)}, path_{std::move(path)} {}
 
   byte_link device_, kept_;
   std::string path_;

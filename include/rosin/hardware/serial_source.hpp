@@ -24,7 +24,8 @@ public:
       if (out.current_) break;
       if (got.gone) return failure{got.problem};
       if (std::chrono::steady_clock::now() > deadline)
-        return failure{out.link_.name() + ": no packet of frames came" + (out.decoder_.counts().corrupted > 0 ? ", only damaged ones" : "")};
+        return failure{out.link_.name() + ": no packet of frames came" +
+                       (out.decoder_.counts().corrupted > 0 ? ", only damaged ones" : "")};
     }
     out.format_ = out.current_->format;
     return out;
@@ -48,7 +49,8 @@ public:
     while (current_ && filled < room) {
       if (used_ == 0 && !begin_packet(out, filled)) return out;
       const std::size_t count = std::min(room - filled, current_->samples.size() - used_);
-      std::copy_n(current_->samples.begin() + static_cast<std::ptrdiff_t>(used_), count, interleaved.begin() + static_cast<std::ptrdiff_t>(filled));
+      std::copy_n(current_->samples.begin() + static_cast<std::ptrdiff_t>(used_), count,
+                  interleaved.begin() + static_cast<std::ptrdiff_t>(filled));
       filled += count;
       used_ += count;
       out.frames = filled / width;

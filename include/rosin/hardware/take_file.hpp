@@ -50,8 +50,12 @@ public:
     const ssize_t done = ::pwrite(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
     return done == static_cast<ssize_t>(bytes.size()) ? std::nullopt : std::optional{why()};
   }
-  [[nodiscard]] std::optional<failure> sync() { return ::fdatasync(fd_.get()) == 0 || errno == EINVAL ? std::nullopt : std::optional{why()}; }
-  [[nodiscard]] std::optional<failure> cut(std::uint64_t bytes) { return ::ftruncate(fd_.get(), static_cast<off_t>(bytes)) == 0 ? std::nullopt : std::optional{why()}; }
+  [[nodiscard]] std::optional<failure> sync() {
+    return ::fdatasync(fd_.get()) == 0 || errno == EINVAL ? std::nullopt : std::optional{why()};
+  }
+  [[nodiscard]] std::optional<failure> cut(std::uint64_t bytes) {
+    return ::ftruncate(fd_.get(), static_cast<off_t>(bytes)) == 0 ? std::nullopt : std::optional{why()};
+  }
 
 private:
   posix_file(int fd, std::string path) : fd_{fd}, path_{std::move(path)} {}
@@ -71,7 +75,8 @@ template <class File = posix_file>
 class take_file {
 public:
   /// The head is on the disk when this returns.
-  [[nodiscard]] static outcome<take_file> create(const std::string& path, const frame_format& format, std::chrono::milliseconds cadence = std::chrono::milliseconds{500}) {
+  [[nodiscard]] static outcome<take_file> create(const std::string& path, const frame_format& format,
+                                                 std::chrono::milliseconds cadence = std::chrono::milliseconds{500}) {
     auto file = File::create(path);
     if (!file) return failure{file.error()};
     auto state = std::make_unique<shared>(*std::move(file), format);
@@ -99,7 +104,9 @@ public:
     if (auto bad = state_->file.write_at(0, make_wav_head(state_->format, state_->data_bytes))) return bad;
     return state_->file.sync();
   }
-  [[nodiscard]] std::uint64_t frames() const noexcept { return state_->data_bytes / (sample_bytes(state_->format) * static_cast<std::size_t>(state_->format.channels)); }
+  [[nodiscard]] std::uint64_t frames() const noexcept {
+    return state_->data_bytes / (sample_bytes(state_->format) * static_cast<std::size_t>(state_->format.channels));
+  }
   [[nodiscard]] const File& file() const noexcept { return state_->file; }
 
 private:
@@ -118,7 +125,9 @@ private:
   };
 
   take_file(std::unique_ptr<shared> state, std::chrono::milliseconds cadence)
-      : state_{std::move(state)}, thread_{[s = state_.get(), cadence](const std::stop_token& stop) { sync_each(*s, cadence, stop); }} {}
+      : state_{std::move(state)}, thread_{[s = state_.get(), cadence](const std::stop_token& stop) {
+          sync_each(*s, cadence, stop);
+        }} {}
 
   static void sync_each(shared& s, std::chrono::milliseconds cadence, const std::stop_token& stop) {
     while (!stop.stop_requested()) {
@@ -155,7 +164,8 @@ static_assert(FrameSink<take_file<>>);
   if (f.channels == 0 || head != make_wav_head(f, std::nullopt)) return false;
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(path, error);
-  const std::uint64_t frame = sample_bytes(f) * static_cast<std::size_t>(f.channels), data = (size - wav_head_bytes) / frame * frame;
+  const std::uint64_t frame = sample_bytes(f) * static_cast<std::size_t>(f.channels),
+                      data = (size - wav_head_bytes) / frame * frame;
   auto file = posix_file::existing(path);
   if (!file) return failure{file.error()};
   if (auto bad = file->cut(wav_head_bytes + data)) return *bad;

@@ -21,15 +21,19 @@ namespace rosin {
 template <class F, class T>
 concept LaneFft = std::movable<F> && std::constructible_from<F, std::size_t> && requires(const F& fft, T* data, std::size_t bin) {
   { F::lanes } -> std::convertible_to<std::size_t>;
-  { fft.size() } noexcept -> std::same_as<std::size_t>;
-  { fft.position(bin) } noexcept -> std::same_as<std::size_t>;
-  { fft.forward(data) } noexcept;
-  { fft.inverse(data) } noexcept;
+  { fft.size() }
+  noexcept->std::same_as<std::size_t>;
+  { fft.position(bin) }
+  noexcept->std::same_as<std::size_t>;
+  { fft.forward(data) }
+  noexcept;
+  { fft.inverse(data) }
+  noexcept;
 };
 
 /// Point j of the blocks: `lanes` real parts at [2 j lanes], then as many imaginary parts.
 template <class T, class Fft>
-  requires LaneFft<Fft, T> || ComplexFft<Fft, T>
+requires LaneFft<Fft, T> || ComplexFft<Fft, T>
 class block_transform {
   static constexpr bool side_by_side = LaneFft<Fft, T>;
   static constexpr std::size_t count_lanes() noexcept {

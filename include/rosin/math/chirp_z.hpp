@@ -28,7 +28,8 @@ class chirp_z {
 public:
   using complex_type = std::complex<T>;
 
-  explicit chirp_z(std::size_t n) : fft_(fast_size(2 * n - 1)), chirp_(n), kernel_(fft_.size()), a_(fft_.size()), b_(fft_.size()) {
+  explicit chirp_z(std::size_t n)
+      : fft_(fast_size(2 * n - 1)), chirp_(n), kernel_(fft_.size()), a_(fft_.size()), b_(fft_.size()) {
     static_assert(ComplexFft<Fft, T>);
     for (std::size_t j = 0; j < n; ++j) chirp_[j] = chirp_at(j, n);
     const T scale = T(1) / static_cast<T>(fft_.size());

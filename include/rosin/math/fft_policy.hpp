@@ -21,20 +21,26 @@ namespace rosin {
 /// F transforms n real samples to n/2 + 1 bins and back, for any n >= 1.
 template <class F, class T>
 concept RealFft = std::movable<F> && std::constructible_from<F, std::size_t> &&
-  requires(F fft, const F& same, const T* samples, T* samples_out, const std::complex<T>* bins, std::complex<T>* bins_out) {
-    { same.size() } noexcept -> std::same_as<std::size_t>;
-    { fft.forward(samples, bins_out) } noexcept;
-    { fft.inverse(bins, samples_out) } noexcept;
-  };
+    requires(F fft, const F& same, const T* samples, T* samples_out, const std::complex<T>* bins, std::complex<T>* bins_out) {
+  { same.size() }
+  noexcept->std::same_as<std::size_t>;
+  { fft.forward(samples, bins_out) }
+  noexcept;
+  { fft.inverse(bins, samples_out) }
+  noexcept;
+};
 
 /// F transforms n complex samples to n bins and back, for any n >= 1.
 template <class F, class T>
 concept ComplexFft = std::movable<F> && std::constructible_from<F, std::size_t> &&
-  requires(F fft, const F& same, const std::complex<T>* in, std::complex<T>* out) {
-    { same.size() } noexcept -> std::same_as<std::size_t>;
-    { fft.forward(in, out) } noexcept;
-    { fft.inverse(in, out) } noexcept;
-  };
+    requires(F fft, const F& same, const std::complex<T>* in, std::complex<T>* out) {
+  { same.size() }
+  noexcept->std::same_as<std::size_t>;
+  { fft.forward(in, out) }
+  noexcept;
+  { fft.inverse(in, out) }
+  noexcept;
+};
 
 /// The largest prime factor of n; 1 for n = 1 and n = 0.
 [[nodiscard]] constexpr std::size_t largest_prime_factor(std::size_t n) noexcept {

@@ -19,7 +19,8 @@
 
 namespace rosin {
 
-/// `lanes` transforms of n points, n a power of two >= 2. Point j: `lanes` real parts at data[2 j lanes], then the imaginary parts.
+/// `lanes` transforms of n points, n a power of two >= 2. Point j: `lanes` real parts at data[2 j lanes], then the imaginary
+/// parts.
 template <class T, std::size_t Lanes = register_lanes<T>>
 class lane_fft {
 public:

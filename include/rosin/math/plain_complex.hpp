@@ -25,7 +25,8 @@ namespace rosin::plain {
   const double larger = std::sqrt((plain::abs(z) + std::abs(z.real())) / 2);
   if (larger == 0) return {};
   const double smaller = z.imag() / (2 * larger);
-  return z.real() >= 0 ? std::complex<double>(larger, smaller) : std::complex<double>(std::abs(smaller), std::copysign(larger, z.imag()));
+  return z.real() >= 0 ? std::complex<double>(larger, smaller)
+                       : std::complex<double>(std::abs(smaller), std::copysign(larger, z.imag()));
 }
 
 /// sinh and cosh of z together, to a few roundings of e^|z|.

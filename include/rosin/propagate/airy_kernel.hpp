@@ -37,8 +37,8 @@ enum class airy_form {
   const double tb = t_s / std::sqrt(stiffness_s2), tau = t_s / delay_s;
   const double K = (1 - 4 * tau * tau + std::sqrt(1 + 8 * tau * tau)) / (8 * tau * tau);
   const double argument = -std::pow(1.5 * tb, 2.0 / 3) * K / std::cbrt(K + 1);
-  const double front = std::pow(3.0, 1.0 / 6) * std::pow(K + 1, 2.0 / 3) /
-                       (std::pow(2.0, 2.0 / 3) * std::sqrt(2 * K + 3) * std::cbrt(tb));
+  const double front =
+      std::pow(3.0, 1.0 / 6) * std::pow(K + 1, 2.0 / 3) / (std::pow(2.0, 2.0 / 3) * std::sqrt(2 * K + 3) * std::cbrt(tb));
   const double v = argument > 100 ? 0.0 : front * boost::math::airy_ai(argument);
   return 2 * v / std::sqrt(stiffness_s2) / (form == airy_form::transmission ? tau : 1.0);
 }

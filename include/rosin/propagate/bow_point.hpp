@@ -16,7 +16,7 @@ struct bow_point {
   std::array<double, 2> delay_s{};  ///< travel times to the near and the far end, at low frequency
   double stiffness_s2 = 0;          ///< epsilon = B m / T^2
   loss_law loss{};
-  double impedance_Ns_m = 0;        ///< Z = sqrt(T m)
+  double impedance_Ns_m = 0;  ///< Z = sqrt(T m)
 };
 
 /// A contact at `position` (0..1, from the near end) of a string.

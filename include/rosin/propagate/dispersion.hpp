@@ -14,7 +14,8 @@
 
 namespace rosin {
 
-/// c k(w) in rad/s: the phase that one second of travel (at low frequency) costs. Odd in w, exact, no cancellation. Of real frequencies; others: complex_dispersion.hpp.
+/// c k(w) in rad/s: the phase that one second of travel (at low frequency) costs. Odd in w, exact, no cancellation. Of real
+/// frequencies; others: complex_dispersion.hpp.
 template <class T>
 [[nodiscard]] T phase_rate(T omega, T epsilon_s2) noexcept {
   using std::sqrt;

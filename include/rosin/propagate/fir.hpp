@@ -66,7 +66,8 @@ inline constexpr std::size_t set_size = std::tuple_size_v<decltype(std::declval<
 /// The responses are sampled on a grid wide enough that what wraps around has died away: at least eight times the
 /// longest lag. Precondition: first <= last, limits.stop_Hz <= rate_Hz / 2.
 template <TransferSet H>
-[[nodiscard]] std::array<fir, set_size<H>> sample_responses(const H& wanted, const band& limits, double rate_Hz, int first, int last) {
+[[nodiscard]] std::array<fir, set_size<H>> sample_responses(const H& wanted, const band& limits, double rate_Hz, int first,
+                                                            int last) {
   std::size_t grid = 4096;
   while (grid < 8 * static_cast<std::size_t>(std::max(std::abs(first), std::abs(last)))) grid *= 2;
   const lane_fft<double, 1> transform(grid);
@@ -87,19 +88,20 @@ template <TransferSet H>
   for (std::size_t i = 0; i < set_size<H>; ++i) {
     transform.inverse(spectrum[i].data());
     out[i].first = first;
-    for (int n = first; n <= last; ++n) out[i].taps.push_back(spectrum[i][2 * (n < 0 ? grid - static_cast<std::size_t>(-n) : static_cast<std::size_t>(n))]);
+    for (int n = first; n <= last; ++n)
+      out[i].taps.push_back(spectrum[i][2 * (n < 0 ? grid - static_cast<std::size_t>(-n) : static_cast<std::size_t>(n))]);
   }
   return out;
 }
 template <Transfer H>
 [[nodiscard]] fir sample_response(const H& wanted, const band& limits, double rate_Hz, int first, int last) {
-  return sample_responses([&](double f) { return std::array<std::complex<double>, 1>{wanted(f)}; }, limits, rate_Hz, first, last)[0];
+  return sample_responses([&](double f) { return std::array<std::complex<double>, 1>{wanted(f)}; }, limits, rate_Hz, first,
+                          last)[0];
 }
 
 /// Largest |response - wanted W| / max |wanted| from 0 to the end of the pass band.
 template <Transfer H>
-[[nodiscard]] double pass_band_error(const fir& kernel, const H& wanted, const band& limits, double rate_Hz,
-                                     int points = 400) {
+[[nodiscard]] double pass_band_error(const fir& kernel, const H& wanted, const band& limits, double rate_Hz, int points = 400) {
   double worst = 0, scale = 0;
   for (int i = 0; i <= points; ++i) {
     const double f = limits.pass_Hz * i / points;
@@ -123,9 +125,10 @@ inline fir shrink(const fir& whole, std::size_t count) {
           {whole.taps.begin() + static_cast<std::ptrdiff_t>(begin), whole.taps.begin() + static_cast<std::ptrdiff_t>(end)}};
 }
 
-/// Whether the response stays within `most` of ideals that lie evenly from 0 to the end of the pass band. Looked at from both ends
-/// towards the middle, since there most runs that are too short are off.
-[[nodiscard]] inline bool stays_near(const fir& kernel, const std::vector<std::complex<double>>& ideal, double most, const band& limits, double rate_Hz) {
+/// Whether the response stays within `most` of ideals that lie evenly from 0 to the end of the pass band. Looked at from both
+/// ends towards the middle, since there most runs that are too short are off.
+[[nodiscard]] inline bool stays_near(const fir& kernel, const std::vector<std::complex<double>>& ideal, double most,
+                                     const band& limits, double rate_Hz) {
   const std::size_t last = ideal.size() - 1;
   for (std::size_t k = 0; k <= last; ++k) {
     const std::size_t i = k % 2 == 0 ? k / 2 : last - k / 2;
@@ -136,7 +139,8 @@ inline fir shrink(const fir& whole, std::size_t count) {
 }
 
 /// As short as it stays near its ideals, by bisection; `error` is relative to the largest of them.
-[[nodiscard]] inline fir shortest_part(const fir& whole, const std::vector<std::complex<double>>& ideal, const band& limits, double rate_Hz, double error) {
+[[nodiscard]] inline fir shortest_part(const fir& whole, const std::vector<std::complex<double>>& ideal, const band& limits,
+                                       double rate_Hz, double error) {
   double scale = 0;
   for (const auto& x : ideal) scale = std::max(scale, std::abs(x));
   std::size_t too_short = 0, enough = whole.taps.size();
@@ -152,7 +156,8 @@ inline fir shrink(const fir& whole, std::size_t count) {
 /// The shortest runs of taps whose responses stay within `error` (relative to the largest |wanted|) of the wanted ones all over
 /// the pass band. `first` ... `last` bound the search and must hold the responses.
 template <TransferSet H>
-[[nodiscard]] std::array<fir, set_size<H>> shortest_firs(const H& wanted, const band& limits, double rate_Hz, int first, int last, double error) {
+[[nodiscard]] std::array<fir, set_size<H>> shortest_firs(const H& wanted, const band& limits, double rate_Hz, int first, int last,
+                                                         double error) {
   constexpr int points = 400;
   std::array<std::vector<std::complex<double>>, set_size<H>> ideal;
   for (int i = 0; i <= points; ++i) {
@@ -165,7 +170,8 @@ template <TransferSet H>
 }
 template <Transfer H>
 [[nodiscard]] fir shortest_fir(const H& wanted, const band& limits, double rate_Hz, int first, int last, double error) {
-  return shortest_firs([&](double f) { return std::array<std::complex<double>, 1>{wanted(f)}; }, limits, rate_Hz, first, last, error)[0];
+  return shortest_firs([&](double f) { return std::array<std::complex<double>, 1>{wanted(f)}; }, limits, rate_Hz, first, last,
+                       error)[0];
 }
 
 }  // namespace rosin

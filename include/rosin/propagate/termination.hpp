@@ -55,9 +55,11 @@ struct admittance_mode {
 
 /// A damper beside a spring, with a mass that hardly counts: Z Y = conductance s / (s + 2 pi corner) below R / M (1/s).
 /// conductance: Z / R; corner: K / (2 pi R), at most a hundredth of R / M.
-[[nodiscard]] inline admittance_mode overdamped_mode(double conductance, double corner_Hz, double without_mass_1_s = 2e7) noexcept {
+[[nodiscard]] inline admittance_mode overdamped_mode(double conductance, double corner_Hz,
+                                                     double without_mass_1_s = 2e7) noexcept {
   const double soft_1_s = 2 * std::numbers::pi * corner_Hz;
-  return {std::sqrt(soft_1_s * without_mass_1_s) / (2 * std::numbers::pi), std::sqrt(soft_1_s / without_mass_1_s), conductance * without_mass_1_s};
+  return {std::sqrt(soft_1_s * without_mass_1_s) / (2 * std::numbers::pi), std::sqrt(soft_1_s / without_mass_1_s),
+          conductance * without_mass_1_s};
 }
 
 /// A sum of modes. Passive as long as no mass is negative.

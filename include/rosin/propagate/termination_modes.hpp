@@ -1,9 +1,10 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Any termination as a sum of modes, for the simulators, which step modes. None is lost by that: a causal, passive admittance is a sum
-// of modes with positive masses, if need be of very many (the integral in termination_table.hpp is one of undamped modes, of weight
-// (2 / pi) Re z dw). Few do: where the reflection R = -(1 - z)/(1 + z) differs most from the wanted one, modes are added, and
+// Any termination as a sum of modes, for the simulators, which step modes. None is lost by that: a causal, passive admittance is
+// a sum of modes with positive masses, if need be of very many (the integral in termination_table.hpp is one of undamped modes,
+// of weight (2 / pi) Re z dw). Few do: where the reflection R = -(1 - z)/(1 + z) differs most from the wanted one, modes are
+// added, and
 //
 //     ln f, ln Q, ln Z/M  of all of them:   sum |R_modes - R|^2  smallest   (Levenberg and Marquardt).
 //
@@ -27,10 +28,10 @@ namespace rosin {
 /// Where the modes have to answer as the termination does, how well, and how many they may be.
 struct mode_limits {
   double from_Hz = 50, to_Hz = 20e3;  ///< modes themselves up to three times as high
-  double tolerance = 1e-3;  ///< stop here
-  double refuse = 0.1;      ///< fail above
+  double tolerance = 1e-3;            ///< stop here
+  double refuse = 0.1;                ///< fail above
   int modes = 90;
-  double least_q = 0.02;    ///< below 0.5 a mode does not ring: its poles are real
+  double least_q = 0.02;  ///< below 0.5 a mode does not ring: its poles are real
 };
 
 /// Modes, and the rms of what their reflection misses over the rms of what makes the wanted one differ from a rigid end's.
@@ -62,7 +63,8 @@ public:
   }
 
   [[nodiscard]] modal_likeness run() {
-    for (int in_vain = 0; in_vain < 2 && all_ > 0 && mismatch() > limits_.tolerance && static_cast<int>(modes_.size()) < limits_.modes;) {
+    for (int in_vain = 0;
+         in_vain < 2 && all_ > 0 && mismatch() > limits_.tolerance && static_cast<int>(modes_.size()) < limits_.modes;) {
       const double before = mismatch();
       add();
       polish();
@@ -96,11 +98,13 @@ private:
 
   /// z of a mode of unit strength at s_k, by real numbers: most of the time goes here.
   [[nodiscard]] complex unit_at(std::size_t k, double f, double q) const {
-    const double w = s_[k].imag(), w0 = 2 * std::numbers::pi * f, off = w0 * w0 - w * w, resists = w * w0 / q, over = w / (off * off + resists * resists);
+    const double w = s_[k].imag(), w0 = 2 * std::numbers::pi * f, off = w0 * w0 - w * w, resists = w * w0 / q,
+                 over = w / (off * off + resists * resists);
     return {over * resists, over * off};
   }
   /// What a mode would take from the difference if it stood alone, and its strength.
-  [[nodiscard]] std::pair<double, admittance_mode> gain_of(double f, double q, const std::vector<double>& weight, const std::vector<complex>& pull) const {
+  [[nodiscard]] std::pair<double, admittance_mode> gain_of(double f, double q, const std::vector<double>& weight,
+                                                           const std::vector<complex>& pull) const {
     double along = 0, size = 0;
     for (std::size_t k = 0; k < s_.size(); ++k) {
       const complex a = unit_at(k, f, q);
@@ -121,13 +125,16 @@ private:
     std::vector<std::pair<double, admittance_mode>> found;
     for (const double sharp : {0.3, 2.0, 8.0, 25.0, 80.0}) {
       const double q = std::max(sharp, limits_.least_q);
-      for (std::size_t k = 0; k < s_.size(); k += 3) found.push_back(gain_of(s_[k].imag() / (2 * std::numbers::pi), q, weight, pull));
-      for (const double f : {limits_.from_Hz / 4, limits_.from_Hz / 2, 1.5 * limits_.to_Hz, 2.5 * limits_.to_Hz}) found.push_back(gain_of(f, q, weight, pull));
+      for (std::size_t k = 0; k < s_.size(); k += 3)
+        found.push_back(gain_of(s_[k].imag() / (2 * std::numbers::pi), q, weight, pull));
+      for (const double f : {limits_.from_Hz / 4, limits_.from_Hz / 2, 1.5 * limits_.to_Hz, 2.5 * limits_.to_Hz})
+        found.push_back(gain_of(f, q, weight, pull));
     }
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     const std::size_t had = modes_.size();
     for (auto it = found.begin(); it != found.end() && it->first > 0 && modes_.size() < had + 3; ++it)
-      if (std::none_of(modes_.begin() + static_cast<std::ptrdiff_t>(had), modes_.end(), [&](const auto& m) { return std::abs(std::log(it->second.frequency_Hz / m.frequency_Hz)) < 0.3; }))
+      if (std::none_of(modes_.begin() + static_cast<std::ptrdiff_t>(had), modes_.end(),
+                       [&](const auto& m) { return std::abs(std::log(it->second.frequency_Hz / m.frequency_Hz)) < 0.3; }))
         modes_.push_back(it->second);
   }
 
@@ -167,7 +174,8 @@ private:
       const complex by = slope(k);
       for (std::size_t m = 0; m < modes_.size(); ++m) {
         const double w = 2 * std::numbers::pi * modes_[m].frequency_Hz, w_s = s_[k].imag();
-        const complex unit = unit_at(k, modes_[m].frequency_Hz, modes_[m].q), over{unit.imag() / w_s, -unit.real() / w_s};  // unit / s
+        const complex unit = unit_at(k, modes_[m].frequency_Hz, modes_[m].q),
+                      over{unit.imag() / w_s, -unit.real() / w_s};  // unit / s
         const complex z = by * modes_[m].per_mass_per_s * unit, resist{0, w_s * w / modes_[m].q};
         const std::array<complex, 3> d{-z * (resist + 2 * w * w) * over, z * resist * over, z};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -189,14 +197,17 @@ private:
 }  // namespace detail
 
 /// Modes stay what they are.
-[[nodiscard]] inline outcome<modal_likeness> as_modes(const modal_termination& end, const mode_limits& = {}) { return modal_likeness{end, 0}; }
+[[nodiscard]] inline outcome<modal_likeness> as_modes(const modal_termination& end, const mode_limits& = {}) {
+  return modal_likeness{end, 0};
+}
 
 /// Fails where no sum of modes within the limits comes near.
 template <Termination End>
 [[nodiscard]] outcome<modal_likeness> as_modes(const End& end, const mode_limits& limits = {}) {
   auto found = detail::mode_fit(end, limits).run();
   if (!(found.mismatch <= limits.refuse))
-    return failure{"termination: " + std::to_string(found.end.modes.size()) + " modes come no nearer to its reflection than " + std::to_string(found.mismatch) + " of what moves"};
+    return failure{"termination: " + std::to_string(found.end.modes.size()) + " modes come no nearer to its reflection than " +
+                   std::to_string(found.mismatch) + " of what moves"};
   return found;
 }
 

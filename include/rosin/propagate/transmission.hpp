@@ -57,16 +57,16 @@ struct passage_lags {
           static_cast<int>(std::ceil(delay_s * rate_Hz + ringing))};
 }
 
-/// Exact-phase transmission kernel: the shortest with the error asked for (1e-2 ... 1e-7 without loss). With loss |w| has a corner at
-/// 0 Hz, whose tails tau / (2 Q) / (pi t^2) set a floor of about 1e-4 at 0 Hz for a long path at Q = 300; it falls as 1/Q.
+/// Exact-phase transmission kernel: the shortest with the error asked for (1e-2 ... 1e-7 without loss). With loss |w| has a
+/// corner at 0 Hz, whose tails tau / (2 Q) / (pi t^2) set a floor of about 1e-4 at 0 Hz for a long path at Q = 300; it falls as
+/// 1/Q.
 [[nodiscard]] inline fir transmission_kernel(const transmission& path, const band& limits, double rate_Hz, double error) {
   const passage_lags lags = lags_of_passage(path.delay_s, path.stiffness_s2, limits, rate_Hz);
   return shortest_fir(path, limits, rate_Hz, lags.first, lags.last, error);
 }
 
 /// Its inverse; anticausal. Without loss it is the transmission kernel reversed in time.
-[[nodiscard]] inline fir transmission_kernel(const inverse_transmission& path, const band& limits, double rate_Hz,
-                                             double error) {
+[[nodiscard]] inline fir transmission_kernel(const inverse_transmission& path, const band& limits, double rate_Hz, double error) {
   const passage_lags lags = lags_of_passage(path.delay_s, path.stiffness_s2, limits, rate_Hz);
   return shortest_fir(path, limits, rate_Hz, -lags.last, -lags.first, error);
 }

@@ -16,9 +16,9 @@
 //
 //     1 / D_j -> (1 + alpha z_j) / D_j,   D_j -> (1 + beta z_j) D_j,   alpha, beta = +-sqrt(1+K) / G + i q rho K / (w G),
 //
-// rho = k / kappa. Nothing is inverted: z_j F_j = Z V_j is a causal, decaying function of the measured force, and goes in as a third
-// and a fourth signal (moving_ends, in newtons), so that these kernels stay as short as they are. Exact for the stiff string
-// (with stiffness and near field of the end); without moving ends nothing of it is compiled.
+// rho = k / kappa. Nothing is inverted: z_j F_j = Z V_j is a causal, decaying function of the measured force, and goes in as a
+// third and a fourth signal (moving_ends, in newtons), so that these kernels stay as short as they are. Exact for the stiff
+// string (with stiffness and near field of the end); without moving ends nothing of it is compiled.
 //
 // Each refinement, and the kernel, is chosen at compile time, so that the paper's own processing is one of the choices:
 // physics<false, false, false, airy_passage>.
@@ -72,7 +72,8 @@ private:
 };
 
 /// What the reconstruction takes into account.
-template <bool ForceFactor = true, bool NearField = true, bool Loss = true, PassageKernel Kernel = exact_passage, bool MovingEnds = false>
+template <bool ForceFactor = true, bool NearField = true, bool Loss = true, PassageKernel Kernel = exact_passage,
+          bool MovingEnds = false>
 struct physics {
   static constexpr bool force_factor = ForceFactor, near_field = NearField, loss = Loss, moving_ends = MovingEnds;
   using kernel = Kernel;
@@ -85,7 +86,8 @@ using with_moving_ends = physics<P::force_factor, P::near_field, P::loss, typena
 using full_physics = physics<>;
 using paper_physics = physics<false, false, false, airy_passage<airy_form::transmission>>;
 
-/// Transfer functions from {F_near, F_far} and, where the ends move, {Z V_near, Z V_far} to {f_near, f_far, v_near, v_far}; row-major.
+/// Transfer functions from {F_near, F_far} and, where the ends move, {Z V_near, Z V_far} to {f_near, f_far, v_near, v_far};
+/// row-major.
 template <class Physics>
 class bow_point_transfer {
 public:
@@ -100,7 +102,8 @@ public:
     const double w = 2 * std::numbers::pi * f_Hz, epsilon = at_.stiffness_s2;
     const double G = Physics::force_factor ? force_factor(w, epsilon) : 1.0;
     const double Zw = at_.impedance_Ns_m * (Physics::force_factor ? wave_impedance_ratio(w, epsilon) : 1.0);
-    const complex back1 = side_[0].back(f_Hz), out1 = side_[0].forward(f_Hz), back2 = side_[1].back(f_Hz), out2 = side_[1].forward(f_Hz);
+    const complex back1 = side_[0].back(f_Hz), out1 = side_[0].forward(f_Hz), back2 = side_[1].back(f_Hz),
+                  out2 = side_[1].forward(f_Hz);
     const complex near_field =
         Physics::near_field ? complex(0, -near_field_ratio(w, epsilon) / (2 * Zw * force_factor(w, epsilon))) : complex(0);
     const complex nf1 = near_field * G * (back1 + out1) / 2.0, nf2 = near_field * G * (back2 + out2) / 2.0;
@@ -111,8 +114,8 @@ public:
       const auto [a, b] = moved(w, G);
       const complex nw1 = near_field * G * (a * back1 + b * out1) / 2.0, nw2 = near_field * G * (a * back2 + b * out2) / 2.0;
       const complex w1 = (a * back1 - b * out1) / (2 * Zw), w2 = (a * back2 - b * out2) / (2 * Zw);
-      return {G * back1, G * out2,  G * a * back1, G * b * out2,  G * out1, G * back2, G * b * out1, G * a * back2,
-              v1 + nf1,  nf2,       w1 + nw1,      nw2,           nf1,      v2 + nf2,  nw1,          w2 + nw2};
+      return {G * back1, G * out2, G * a * back1, G * b * out2, G * out1, G * back2, G * b * out1, G * a * back2,
+              v1 + nf1,  nf2,      w1 + nw1,      nw2,          nf1,      v2 + nf2,  nw1,          w2 + nw2};
     }
   }
 

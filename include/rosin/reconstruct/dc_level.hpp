@@ -26,7 +26,8 @@ struct dc_estimate {
   constexpr double middle = 0.65, doubt = 0.15;  // of the friction coefficient while slipping
   std::vector<double> sliding;
   for (std::size_t i = 0; i < force_N.size() && i < velocity_m_s.size(); ++i)
-    if (std::isfinite(force_N[i]) && std::isfinite(velocity_m_s[i]) && velocity_m_s[i] * rod_speed_m_s < 0.5 * rod_speed_m_s * rod_speed_m_s)
+    if (std::isfinite(force_N[i]) && std::isfinite(velocity_m_s[i]) &&
+        velocity_m_s[i] * rod_speed_m_s < 0.5 * rod_speed_m_s * rod_speed_m_s)
       sliding.push_back(force_N[i]);
   if (sliding.size() < 20 || !(normal_force_N > 0)) return {};
   const auto quantile = [&](double q) {

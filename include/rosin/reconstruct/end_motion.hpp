@@ -8,9 +8,9 @@
 //
 //     y[n] = e^{p h} y[n-1] + (b * F)[n],    b(w) = r (1 - e^{(p - i w) h}) / (i w - p)
 //
-// b, the response of the pole over one step, is entire in w and so a short FIR within any band; the recursion is then exact there,
-// unlike an impulse-invariant or bilinear one. Anything else is convolved with its impulse response. What was before the record is taken
-// as its first sample forever; `settled` says from when on that no longer matters.
+// b, the response of the pole over one step, is entire in w and so a short FIR within any band; the recursion is then exact
+// there, unlike an impulse-invariant or bilinear one. Anything else is convolved with its impulse response. What was before the
+// record is taken as its first sample forever; `settled` says from when on that no longer matters.
 //
 #pragma once
 
@@ -28,14 +28,15 @@ namespace rosin {
 /// Z V of an end in newtons, sample by sample.
 struct end_motion {
   std::vector<double> times_impedance_N;
-  sample_range known{0, 0};     ///< samples that depend on samples of the record only, or on rest before it
-  std::size_t settled = 0;      ///< from here on it does not matter what was before the record
+  sample_range known{0, 0};  ///< samples that depend on samples of the record only, or on rest before it
+  std::size_t settled = 0;   ///< from here on it does not matter what was before the record
 };
 
 namespace detail {
 
 /// Real and imaginary part of b, as FIRs.
-[[nodiscard]] inline std::array<fir, 2> step_taps(std::complex<double> pole, std::complex<double> residue, const band& limits, double rate_Hz) {
+[[nodiscard]] inline std::array<fir, 2> step_taps(std::complex<double> pole, std::complex<double> residue, const band& limits,
+                                                  double rate_Hz) {
   using complex = std::complex<double>;
   const auto b = [=](double f) -> complex {
     const complex rest = complex(0, 2 * std::numbers::pi * f) - pole, x = -rest / rate_Hz;
@@ -54,10 +55,12 @@ namespace detail {
   double sum = 0;
   const std::ptrdiff_t from = n - k.first;
   if (from <= last && n - k.last() >= 0) {
-    for (std::size_t j = 0; j < k.taps.size(); ++j) sum += k.taps[j] * x[static_cast<std::size_t>(from - static_cast<std::ptrdiff_t>(j))];
+    for (std::size_t j = 0; j < k.taps.size(); ++j)
+      sum += k.taps[j] * x[static_cast<std::size_t>(from - static_cast<std::ptrdiff_t>(j))];
     return sum;
   }
-  for (std::size_t j = 0; j < k.taps.size(); ++j) sum += k.taps[j] * x[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(from - static_cast<std::ptrdiff_t>(j), 0, last))];
+  for (std::size_t j = 0; j < k.taps.size(); ++j)
+    sum += k.taps[j] * x[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(from - static_cast<std::ptrdiff_t>(j), 0, last))];
   return sum;
 }
 
@@ -70,10 +73,12 @@ inline void widen(sample_range& known, const fir& k, std::size_t samples) {
 }  // namespace detail
 
 /// Adds one mode's motion to `out`.
-inline void add_mode_motion(const admittance_mode& mode, std::span<const double> force_N, const band& limits, double rate_Hz, end_motion& out) {
+inline void add_mode_motion(const admittance_mode& mode, std::span<const double> force_N, const band& limits, double rate_Hz,
+                            end_motion& out) {
   admittance_mode apart = mode;  // two equal poles are told apart
   if (std::abs(mode.q - 0.5) < 1e-6) apart.q = 0.5 - 1e-6;
-  const std::complex<double> p = apart.pole(), other = p.imag() != 0 ? std::conj(p) : -p - 2 * std::numbers::pi * apart.frequency_Hz / apart.q;
+  const std::complex<double> p = apart.pole(),
+                             other = p.imag() != 0 ? std::conj(p) : -p - 2 * std::numbers::pi * apart.frequency_Hz / apart.q;
   const bool pair = p.imag() != 0;
   for (const auto& [pole, rest] : {std::pair{p, other}, std::pair{other, p}}) {
     const std::complex<double> residue = mode.per_mass_per_s * pole / (pole - rest);
@@ -91,7 +96,8 @@ inline void add_mode_motion(const admittance_mode& mode, std::span<const double>
 }
 
 /// Modes, by recursion. `limits`: as of the reconstruction.
-[[nodiscard]] inline end_motion motion_of_end(const modal_termination& end, std::span<const double> force_N, const band& limits, double rate_Hz) {
+[[nodiscard]] inline end_motion motion_of_end(const modal_termination& end, std::span<const double> force_N, const band& limits,
+                                              double rate_Hz) {
   end_motion out{std::vector<double>(force_N.size(), 0.0), {0, force_N.size()}, 0};
   for (const admittance_mode& m : end.modes) add_mode_motion(m, force_N, limits, rate_Hz, out);
   out.settled = std::min(force_N.size(), out.known.begin + static_cast<std::size_t>(end.memory_s() * rate_Hz));
@@ -118,7 +124,8 @@ template <Termination End>
   for (std::size_t k = 0; k < bins.size(); ++k) bins[k] *= limits(step_Hz * static_cast<double>(k));
   std::vector<double> response(size);
   eigen_fft<double>(size).inverse(bins.data(), response.data());
-  const int before = std::min(static_cast<int>(20 * rate_Hz / (limits.stop_Hz - limits.pass_Hz)) + 24, static_cast<int>(size / 8));
+  const int before =
+      std::min(static_cast<int>(20 * rate_Hz / (limits.stop_Hz - limits.pass_Hz)) + 24, static_cast<int>(size / 8));
   fir out{-before, std::vector<double>(response.end() - before, response.end())};
   out.taps.insert(out.taps.end(), response.begin(), response.begin() + static_cast<std::ptrdiff_t>(size / 2));
   return out;
@@ -138,7 +145,9 @@ template <Termination End>
   const std::array<std::span<const double>, 1> in{longer};
   const std::array<std::span<double>, 1> out_spans{moved};
   block_convolver<double>(1, std::vector<fir>{response}).process(in, out_spans);
-  end_motion out{{moved.begin() + static_cast<std::ptrdiff_t>(behind), moved.end() - static_cast<std::ptrdiff_t>(ahead)}, {ahead, force_N.size()}, 0};
+  end_motion out{{moved.begin() + static_cast<std::ptrdiff_t>(behind), moved.end() - static_cast<std::ptrdiff_t>(ahead)},
+                 {ahead, force_N.size()},
+                 0};
   out.known = {std::min(ahead, force_N.size()), force_N.size() - std::min(ahead, force_N.size())};
   out.settled = std::min(force_N.size(), out.known.begin + static_cast<std::size_t>(end.memory_s() * rate_Hz));
   return out;

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // How a reconstruction answers to the modes of its terminations: further columns beside those of the waveform parameters
-// (sensitivity.hpp), d/d ln f, d/d ln Q, d/d ln(Z/M) of each mode. The motion of the end is differentiated and sent through the kernels
-// that its motion takes. With the joint covariance of a fit (end_fit.hpp) error bars grow where the terminations are uncertain.
+// (sensitivity.hpp), d/d ln f, d/d ln Q, d/d ln(Z/M) of each mode. The motion of the end is differentiated and sent through the
+// kernels that its motion takes. With the joint covariance of a fit (end_fit.hpp) error bars grow where the terminations are
+// uncertain.
 //
 #pragma once
 
@@ -21,7 +22,8 @@ struct mode_of_end {
 namespace detail {
 
 /// Motion's derivative by parameter 0: ln f, 1: ln Q, 2: ln(Z/M).
-[[nodiscard]] inline std::vector<double> motion_slope(const admittance_mode& mode, int parameter, std::span<const double> force_N, const band& limits, double rate_Hz) {
+[[nodiscard]] inline std::vector<double> motion_slope(const admittance_mode& mode, int parameter, std::span<const double> force_N,
+                                                      const band& limits, double rate_Hz) {
   if (parameter == 2) return motion_of_end(modal_termination{{mode}}, force_N, limits, rate_Hz).times_impedance_N;
   const double step = parameter == 0 ? 1e-3 / mode.q : 1e-2;
   admittance_mode up = mode, down = mode;
@@ -39,7 +41,8 @@ template <class Physics>
 [[nodiscard]] std::vector<fir> kernels_of_motion(const bow_point& at, std::size_t end, const band& limits, double rate_Hz) {
   const bow_point_transfer<Physics> transfer(at, limits, rate_Hz);
   const passage_lags lags = lags_of_passage(std::max(at.delay_s[0], at.delay_s[1]), at.stiffness_s2, limits, rate_Hz);
-  const auto kernels = sample_responses([&](double f) { return combine(transfer(f), 2 + end); }, limits, rate_Hz, -lags.last, lags.last);
+  const auto kernels =
+      sample_responses([&](double f) { return combine(transfer(f), 2 + end); }, limits, rate_Hz, -lags.last, lags.last);
   return {kernels.begin(), kernels.end()};
 }
 
@@ -47,19 +50,23 @@ template <class Physics>
 
 /// Appends three columns for each mode. `in`: the signals that the reconstruction had.
 template <class Physics>
-  requires(Physics::moving_ends)
-void append_end_sensitivity(reconstruction_sensitivity& s, const bow_point& at, std::span<const mode_of_end> modes, const end_signals<double, Physics>& in,
-                            const band& limits, double rate_Hz) {
+requires(Physics::moving_ends) void append_end_sensitivity(reconstruction_sensitivity& s, const bow_point& at,
+                                                           std::span<const mode_of_end> modes,
+                                                           const end_signals<double, Physics>& in, const band& limits,
+                                                           double rate_Hz) {
   const Eigen::Index first = s.force.cols(), n = s.force.rows();
-  for (auto* part : {&s.force, &s.difference, &s.velocity}) part->conservativeResize(n, first + 3 * static_cast<Eigen::Index>(modes.size()));
-  std::array<block_convolver<double>, 2> through{block_convolver<double>(1, detail::kernels_of_motion<Physics>(at, 0, limits, rate_Hz)),
-                                                 block_convolver<double>(1, detail::kernels_of_motion<Physics>(at, 1, limits, rate_Hz))};
+  for (auto* part : {&s.force, &s.difference, &s.velocity})
+    part->conservativeResize(n, first + 3 * static_cast<Eigen::Index>(modes.size()));
+  std::array<block_convolver<double>, 2> through{
+      block_convolver<double>(1, detail::kernels_of_motion<Physics>(at, 0, limits, rate_Hz)),
+      block_convolver<double>(1, detail::kernels_of_motion<Physics>(at, 1, limits, rate_Hz))};
   for (std::size_t k = 0; k < modes.size(); ++k)
     for (int parameter = 0; parameter < 3; ++parameter) {
       const std::vector<double> slope = detail::motion_slope(modes[k].mode, parameter, in[modes[k].end], limits, rate_Hz);
       const Eigen::Index column = first + 3 * static_cast<Eigen::Index>(k) + parameter;
       std::array<std::span<double>, 3> out;
-      for (std::size_t q = 0; auto* part : {&s.force, &s.difference, &s.velocity}) out[q++] = {part->col(column).data(), static_cast<std::size_t>(n)};
+      for (std::size_t q = 0; auto* part : {&s.force, &s.difference, &s.velocity})
+        out[q++] = {part->col(column).data(), static_cast<std::size_t>(n)};
       const std::array<std::span<const double>, 1> one{slope};
       through[modes[k].end].process(one, out);
     }

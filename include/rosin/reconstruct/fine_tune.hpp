@@ -28,7 +28,7 @@ struct drift_allowance {
 struct fine_tuning {
   calibration tuned;
   waveform_vector shift = waveform_vector::Zero();  ///< of delays (s) and ln gain ratio; the others are 0
-  double sigmas = 0;         ///< size of the shift, in standard deviations of the plucks' calibration and of the stroke's data
+  double sigmas = 0;  ///< size of the shift, in standard deviations of the plucks' calibration and of the stroke's data
   double delta_before = 0, delta_after = 0;  ///< Eq. (12), of the two versions of the force
   int iterations = 0;
 };
@@ -47,7 +47,8 @@ inline constexpr std::array<Eigen::Index, 3> tuned_parameters{0, 1, 5};
 
 /// Recorded nominal newtons to newtons.
 template <std::size_t Inputs>
-[[nodiscard]] std::array<std::vector<double>, Inputs> calibrated(const calibration& c, const std::array<std::span<const double>, Inputs>& recorded) {
+[[nodiscard]] std::array<std::vector<double>, Inputs> calibrated(const calibration& c,
+                                                                 const std::array<std::span<const double>, Inputs>& recorded) {
   std::array<std::vector<double>, Inputs> out;
   for (std::size_t i = 0; i < Inputs; ++i) {
     out[i].assign(recorded[i].begin(), recorded[i].end());
@@ -55,7 +56,8 @@ template <std::size_t Inputs>
   }
   return out;
 }
-[[nodiscard]] inline std::array<std::vector<double>, 2> calibrated(const calibration& c, std::span<const double> near, std::span<const double> far) {
+[[nodiscard]] inline std::array<std::vector<double>, 2> calibrated(const calibration& c, std::span<const double> near,
+                                                                   std::span<const double> far) {
   return calibrated<2>(c, {near, far});
 }
 template <std::size_t Inputs>
@@ -69,8 +71,8 @@ template <std::size_t Inputs>
 
 /// Recorded forces (and motion of the ends) in nominal newtons, gains not yet taken out.
 template <class Physics = full_physics>
-[[nodiscard]] fine_tuning fine_tune(const calibration& from, const end_signals<double, Physics>& recorded, const band& limits, double rate_Hz,
-                                    const drift_allowance& allowed = {}) {
+[[nodiscard]] fine_tuning fine_tune(const calibration& from, const end_signals<double, Physics>& recorded, const band& limits,
+                                    double rate_Hz, const drift_allowance& allowed = {}) {
   fine_tuning out{from};
   const auto& which = detail::tuned_parameters;
   const Eigen::Matrix3d plucked = from.covariance(which, which), prior = plucked + detail::allowed_covariance(from, allowed);
@@ -92,7 +94,8 @@ template <class Physics = full_physics>
                         Eigen::VectorXd::Map(motion.force_far_N.data() + begin, count);
     S.rowwise() -= S.colwise().mean().eval();
     e.array() -= e.mean();
-    const double white = std::max(1e-24, e.squaredNorm() / static_cast<double>(count)) * rate_Hz / (limits.pass_Hz + limits.stop_Hz);
+    const double white =
+        std::max(1e-24, e.squaredNorm() / static_cast<double>(count)) * rate_Hz / (limits.pass_Hz + limits.stop_Hz);
     const Eigen::Matrix3d information = S.transpose() * S / white;
     posterior = (information + prior.inverse()).inverse();
     const Eigen::Vector3d step = posterior * (-S.transpose() * e / white - prior.inverse() * moved);

@@ -27,12 +27,17 @@ namespace rosin {
 
 /// A design in double, of any length.
 struct passage_plan {
-  std::array<fir, 4> passage;                   ///< from newtons as recorded; empty where the version has no use for it
-  std::vector<double> admittance, near_field;   ///< from the middle: y[0] and y[k] on both sides; n[k] on the older, -n[k] on the newer
+  std::array<fir, 4> passage;  ///< from newtons as recorded; empty where the version has no use for it
+  /// from the middle: y[0] and y[k] on both sides; n[k] on the older, -n[k] on the newer
+  std::vector<double> admittance, near_field;
   bow_version version = bow_version::both;
 
-  [[nodiscard]] int reach_ahead() const noexcept { return half_length() + extreme([](const fir& k) { return -k.first; }); }
-  [[nodiscard]] int reach_back() const noexcept { return half_length() + extreme([](const fir& k) { return k.last(); }); }
+  [[nodiscard]] int reach_ahead() const noexcept {
+    return half_length() + extreme([](const fir& k) { return -k.first; });
+  }
+  [[nodiscard]] int reach_back() const noexcept {
+    return half_length() + extreme([](const fir& k) { return k.last(); });
+  }
   [[nodiscard]] int half_length() const noexcept { return static_cast<int>(admittance.size()) - 1; }
   /// Taps of the longest passage, rounded up to a multiple of 4, and frames that one output depends on.
   [[nodiscard]] std::size_t longest() const noexcept {
@@ -84,7 +89,8 @@ template <class Physics>
 
 /// Least squares in the band: part 0, cosines, for y; part 1, sines, for n.
 template <class Physics>
-[[nodiscard]] std::vector<double> short_taps(const bow_point& at, const band& limits, double rate_Hz, int half_length, std::size_t part) {
+[[nodiscard]] std::vector<double> short_taps(const bow_point& at, const band& limits, double rate_Hz, int half_length,
+                                             std::size_t part) {
   const int points = 16 * (half_length + 8);
   const Eigen::Index unknowns = part == 0 ? half_length + 1 : half_length;
   std::vector<double> out(static_cast<std::size_t>(half_length + 1), 0.0);
@@ -94,7 +100,9 @@ template <class Physics>
   for (int i = 0; i < points; ++i) {
     const double f = limits.stop_Hz * i / points, angle = 2 * std::numbers::pi * f / rate_Hz, weight = limits(f);
     for (Eigen::Index c = 0; c < unknowns; ++c)
-      to(i, c) = weight * (part == 1 ? 2 * std::sin(angle * static_cast<double>(c + 1)) : c == 0 ? 1.0 : 2 * std::cos(angle * static_cast<double>(c)));
+      to(i, c) = weight * (part == 1 ? 2 * std::sin(angle * static_cast<double>(c + 1))
+                           : c == 0  ? 1.0
+                                     : 2 * std::cos(angle * static_cast<double>(c)));
     wanted[i] = weight * short_responses<Physics>(at, f)[part];
   }
   const Eigen::VectorXd taps = to.colPivHouseholderQr().solve(wanted);
@@ -135,8 +143,9 @@ inline void add_convolved(fir& sum, const std::vector<double>& a, double sign, d
 /// gain: recorded / true, of near and far. error: largest relative error of the passages in the pass band, and of y and n.
 /// half_length < 0: as short as `error` allows.
 template <class Physics = full_physics>
-[[nodiscard]] passage_plan plan_passages(const bow_point& at, const std::array<double, 2>& gain, const band& limits, double rate_Hz,
-                                         double error = 1e-3, bow_version version = bow_version::both, int half_length = -1) {
+[[nodiscard]] passage_plan plan_passages(const bow_point& at, const std::array<double, 2>& gain, const band& limits,
+                                         double rate_Hz, double error = 1e-3, bow_version version = bow_version::both,
+                                         int half_length = -1) {
   const std::vector<fir> all = bow_point_kernels<Physics>(at, limits, rate_Hz, error);
   passage_plan plan{{all[0], all[2], all[3], all[1]}, {}, {}, version};
   if (version == bow_version::near) plan.passage[2] = {};
@@ -163,7 +172,9 @@ template <class Physics = full_physics>
       detail::add_convolved(out[2 * version + input], {1.0}, 1, 1, *force[version][input]);
       fir& velocity = out[4 + 2 * version + input];
       for (std::size_t of = 0; of < 2; ++of) {
-        const double share = plan.version == bow_version::both ? 0.5 : (plan.version == bow_version::near) == (of == 0) ? 1.0 : 0.0;
+        const double share = plan.version == bow_version::both                  ? 0.5
+                             : (plan.version == bow_version::near) == (of == 0) ? 1.0
+                                                                                : 0.0;
         detail::add_convolved(velocity, plan.near_field, -1, share, *force[of][input]);
       }
       if (version != input) continue;
@@ -176,11 +187,15 @@ template <class Physics = full_physics>
 /// Into fixed size. Fails where Taps, Line or Short do not hold the plan.
 template <class T, std::size_t Taps, std::size_t Line, std::size_t Short>
 [[nodiscard]] outcome<passage_coefficients<T, Taps, Short>> fixed_size(const passage_plan& plan) {
-  const std::size_t longest = plan.longest(), half = plan.admittance.size() - 1, span = plan.span() + 3, chunk = detail::passage_chunk<T>;
-  if (longest > Taps) return failure{"a passage needs " + std::to_string(longest) + " taps, there is room for " + std::to_string(Taps)};
-  if (half != Short) return failure{"the short filters have half-length " + std::to_string(half) + ", not " + std::to_string(Short)};
+  const std::size_t longest = plan.longest(), half = plan.admittance.size() - 1, span = plan.span() + 3,
+                    chunk = detail::passage_chunk<T>;
+  if (longest > Taps)
+    return failure{"a passage needs " + std::to_string(longest) + " taps, there is room for " + std::to_string(Taps)};
+  if (half != Short)
+    return failure{"the short filters have half-length " + std::to_string(half) + ", not " + std::to_string(Short)};
   if (span + chunk > Line)
-    return failure{"the passages span " + std::to_string(span + chunk) + " frames with a chunk, the delay lines hold " + std::to_string(Line)};
+    return failure{"the passages span " + std::to_string(span + chunk) + " frames with a chunk, the delay lines hold " +
+                   std::to_string(Line)};
   passage_coefficients<T, Taps, Short> out;
   const auto to = [](double tap) { return static_cast<T>(tap); };
   out.version = plan.version;

@@ -33,15 +33,15 @@ namespace rosin {
 /// Which of the two versions of force and velocity is made; of one alone both fields of a frame hold it.
 enum class bow_version { both, near, far };
 
-/// Everything the run-time part has to be given (passage_design.hpp, or the header that `rosin fit --emit-header` writes). Taps stand in
-/// order of arrival, oldest sample first; where their number is no multiple of 4, zeros stand before them.
+/// Everything the run-time part has to be given (passage_design.hpp, or the header that `rosin fit --emit-header` writes). Taps
+/// stand in order of arrival, oldest sample first; where their number is no multiple of 4, zeros stand before them.
 template <class T, std::size_t Taps, std::size_t Short>
 struct passage_coefficients {
   static constexpr std::size_t short_taps = (2 * Short + 4) / 4 * 4;
-  std::array<streaming_kernel<T, Taps>, 4> passage{};           ///< near back, near out, far back, far out
-  std::array<T, short_taps> admittance{}, near_field{};         ///< y and n, 2 Short + 1 taps each
-  std::size_t latency = 0;                                      ///< frames
-  std::size_t reach = 0;                                        ///< frames that one output depends on
+  std::array<streaming_kernel<T, Taps>, 4> passage{};    ///< near back, near out, far back, far out
+  std::array<T, short_taps> admittance{}, near_field{};  ///< y and n, 2 Short + 1 taps each
+  std::size_t latency = 0;                               ///< frames
+  std::size_t reach = 0;                                 ///< frames that one output depends on
   bow_version version = bow_version::both;
 };
 
@@ -57,8 +57,8 @@ public:
   static_assert(Taps % 4 == 0, "kernels are run four taps at a time");
 
   constexpr explicit passage_reconstructor(const coefficients_type& c) noexcept
-      : admittance_{padded<short_room>(c.admittance, short_taps)}, near_field_{padded<short_room>(c.near_field, short_taps)},
-        latency_{c.latency}, reach_{c.reach}, version_{c.version} {
+      : admittance_{padded<short_room>(c.admittance, short_taps)},
+        near_field_{padded<short_room>(c.near_field, short_taps)}, latency_{c.latency}, reach_{c.reach}, version_{c.version} {
     for (std::size_t p = 0; p < 4; ++p) passage_[p] = passage(c.passage[p]);
   }
 
@@ -158,7 +158,8 @@ private:
     return lines_.at(p / 2, passage_[p].newest_age + (passage_[p].count > 0 ? before : 0));
   }
 
-  /// Takes one frame into the windows and gives what is in their middle. They move within registers, and are stored as they are loaded.
+  /// Takes one frame into the windows and gives what is in their middle. They move within registers, and are stored as they are
+  /// loaded.
   output_type moved_on(const std::array<std::array<T, 1>, signals>& m) noexcept {
     forces_.push(std::array<std::array<T, 1>, 2>{{m[force_near], m[force_far]}});
     using vector = typename lanes_of<T, register_lanes<T>>::type;
@@ -168,7 +169,8 @@ private:
     const vector near_field = through(2, force, near_field_, vector{});
     const vector near = through(0, round_near, admittance_, near_field), far = through(1, round_far, admittance_, near_field);
     constexpr std::size_t width = register_lanes<T>;
-    return {*forces_.at(0, Short), *forces_.at(1, Short), detail::sum_of_lanes<T, width>(near), detail::sum_of_lanes<T, width>(far)};
+    return {*forces_.at(0, Short), *forces_.at(1, Short), detail::sum_of_lanes<T, width>(near),
+            detail::sum_of_lanes<T, width>(far)};
   }
 
   void run_chunk(const input_type* in, output_type* out) noexcept {
@@ -226,8 +228,8 @@ private:
   std::size_t latency_, reach_;
   bow_version version_;
   doubled_lines<T, 2, Line + quantum> lines_;
-  doubled_lines<T, 2, Short + 5 * chunk> forces_;                     ///< under the bow, until the velocities are there
-  std::array<std::array<T, short_room + chunk>, 3> window_{};        ///< of the short filters, oldest first; room for a chunk
+  doubled_lines<T, 2, Short + 5 * chunk> forces_;              ///< under the bow, until the velocities are there
+  std::array<std::array<T, short_room + chunk>, 3> window_{};  ///< of the short filters, oldest first; room for a chunk
   std::size_t finite_ = 0;
 };
 

@@ -1,8 +1,9 @@
 // tier: freestanding
 // SPDX-License-Identifier: MIT
 //
-// What a streaming filter is made of: delay lines that never wrap, and sums of products over them in vector registers, one output at a
-// time or a chunk of outputs at once. On a core without vectors a register is one number, and the chunk is what its registers hold:
+// What a streaming filter is made of: delay lines that never wrap, and sums of products over them in vector registers, one output
+// at a time or a chunk of outputs at once. On a core without vectors a register is one number, and the chunk is what its
+// registers hold:
 //
 //     passage_dot   one output, taps and samples side by side           two loads a product
 //     passage_fir   a chunk, each tap and each sample fetched once      1 + 1/8 ... 1/16 loads a product
@@ -81,7 +82,8 @@ template <class T, std::size_t Count>
     using half = typename lanes_of<T, Count / 2>::type;
     const auto [low, high] = [&]<std::size_t... I>(std::index_sequence<I...>) {
       return std::array<half, 2>{__builtin_shufflevector(v, v, I...), __builtin_shufflevector(v, v, (I + Count / 2)...)};
-    }(std::make_index_sequence<Count / 2>{});
+    }
+    (std::make_index_sequence<Count / 2>{});
     return sum_of_lanes<T, Count / 2>(low + high);
   }
 }
@@ -98,7 +100,8 @@ template <class T, std::size_t Count>
       using half = typename lanes_of<T, Count / 2>::type;
       const half low = __builtin_shufflevector(v, v, I...), high = __builtin_shufflevector(v, v, (I + Count / 2)...);
       return fold_by_four<T, Count / 2>(low + high);
-    }(std::make_index_sequence<Count / 2>{});
+    }
+    (std::make_index_sequence<Count / 2>{});
   }
 }
 
@@ -107,9 +110,11 @@ template <class T, std::size_t Count>
 [[nodiscard]] std::array<T, 4> four_sums_of_lanes(const std::array<typename lanes_of<T, Count>::type, 4>& v) noexcept {
   using vector = typename lanes_of<T, Count>::type;
   if constexpr (Count < 4) {
-    return {sum_of_lanes<T, Count>(v[0]), sum_of_lanes<T, Count>(v[1]), sum_of_lanes<T, Count>(v[2]), sum_of_lanes<T, Count>(v[3])};
+    return {sum_of_lanes<T, Count>(v[0]), sum_of_lanes<T, Count>(v[1]), sum_of_lanes<T, Count>(v[2]),
+            sum_of_lanes<T, Count>(v[3])};
   } else {
-    const auto halves = []<std::size_t... I>(const vector& a, const vector& b, std::index_sequence<I...>) {  // a0+a2, b0+b2, a1+a3, b1+b3
+    const auto halves =
+        []<std::size_t... I>(const vector& a, const vector& b, std::index_sequence<I...>) {  // a0+a2, b0+b2, a1+a3, b1+b3
       return vector(__builtin_shufflevector(a, b, (I / 4 * 4 + I % 4 / 2 + I % 2 * Count)...) +
                     __builtin_shufflevector(a, b, (I / 4 * 4 + 2 + I % 4 / 2 + I % 2 * Count)...));
     };
@@ -131,15 +136,18 @@ template <class T>
   std::size_t j = 0;
   for (; j + step <= count; j += step)
 #pragma GCC unroll 4
-    for (std::size_t p = 0; p < sums; ++p) sum[p] += load_lanes<vector>(taps + j + p * width) * load_lanes<vector>(x + j + p * width);
+    for (std::size_t p = 0; p < sums; ++p)
+      sum[p] += load_lanes<vector>(taps + j + p * width) * load_lanes<vector>(x + j + p * width);
   if (j < count) sum[0] += load_lanes<vector>(taps + j) * load_lanes<vector>(x + j);
   if constexpr (sums == 4) return (sum[0] + sum[1]) + (sum[2] + sum[3]);
   else return vector(sum[0] + sum[1]);
 }
 
-/// Moves a window of `count` samples on by one, `newest` behind them; `sum` and the sum of taps and window, spread over the lanes.
+/// Moves a window of `count` samples on by one, `newest` behind them; `sum` and the sum of taps and window, spread over the
+/// lanes.
 template <class T, class Vector>
-[[nodiscard, gnu::always_inline]] inline Vector shift_dot(T* window, const T* taps, std::size_t count, T newest, Vector sum) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector shift_dot(T* window, const T* taps, std::size_t count, T newest,
+                                                          Vector sum) noexcept {
   constexpr std::size_t width = register_lanes<T>;
   Vector now = load_lanes<Vector>(window);
   for (std::size_t j = 0; j < count; j += width) {
@@ -148,8 +156,10 @@ template <class T, class Vector>
     else if constexpr (width == 1) next = newest;
     else next[0] = newest;
     if constexpr (width == 1) now = next;
-    else
-      now = [&]<std::size_t... I>(std::index_sequence<I...>) { return __builtin_shufflevector(now, next, (I + 1)...); }(std::make_index_sequence<width>{});
+    else now = [&]<std::size_t... I>(std::index_sequence<I...>) {
+        return __builtin_shufflevector(now, next, (I + 1)...);
+      }
+    (std::make_index_sequence<width>{});
     std::memcpy(window + j, &now, sizeof now);
     sum += load_lanes<Vector>(taps + j) * now;
     now = next;

@@ -26,9 +26,9 @@ namespace rosin {
 
 /// Two channels as Fourier series over one stretch.
 struct periodic_part {
-  std::size_t begin = 0, end = 0;      ///< samples of the take
-  double period = 0;                   ///< samples
-  double remainder = 1;                ///< rms of what is not periodic / rms of what moves
+  std::size_t begin = 0, end = 0;          ///< samples of the take
+  double period = 0;                       ///< samples
+  double remainder = 1;                    ///< rms of what is not periodic / rms of what moves
   std::array<Eigen::VectorXcd, 2> series;  ///< c_0 ... c_H; phases counted from sample `begin`
 
   [[nodiscard]] double periods() const { return static_cast<double>(end - begin) / period; }
@@ -98,8 +98,9 @@ inline std::size_t steadiest(std::span<const double> x, double period, std::size
 }  // namespace detail
 
 /// Finds the stretch of `periods` periods near 1/nominal_Hz (within 15 %: friction flattens) that repeats best, in both channels.
-[[nodiscard]] inline outcome<periodic_part> find_periodic_part(std::span<const double> near, std::span<const double> far, double rate_Hz,
-                                                               double nominal_Hz, double highest_Hz, int periods = 7) {
+[[nodiscard]] inline outcome<periodic_part> find_periodic_part(std::span<const double> near, std::span<const double> far,
+                                                               double rate_Hz, double nominal_Hz, double highest_Hz,
+                                                               int periods = 7) {
   const double rough = rate_Hz / nominal_Hz;
   if (static_cast<double>(near.size()) < (periods + 3) * rough)
     return failure{"the take is shorter than " + std::to_string(periods + 3) + " periods"};

@@ -13,8 +13,8 @@
 //
 #pragma once
 
-#include <rosin/reconstruct/consistency.hpp>
 #include <rosin/reconstruct/bow_point_transfer.hpp>
+#include <rosin/reconstruct/consistency.hpp>
 #include <rosin/reconstruct/periodic_part.hpp>
 
 #include <concepts>
@@ -36,8 +36,8 @@ struct periodic_motion {
   periodic_part source;
   int samples_per_period = 0;
   std::vector<double> force_near_N, force_far_N, velocity_near_m_s, velocity_far_m_s;
-  double delta = 0;                    ///< Eq. (12), of the two versions of the force
-  std::vector<band> regularised;       ///< bands in which a denominator was too small to trust
+  double delta = 0;               ///< Eq. (12), of the two versions of the force
+  std::vector<band> regularised;  ///< bands in which a denominator was too small to trust
 };
 
 namespace detail {
@@ -53,7 +53,8 @@ inline std::vector<double> evaluate_series(const Eigen::VectorXcd& series, int c
   std::vector<double> out(static_cast<std::size_t>(count), 0.0);
   for (int n = 0; n < count; ++n)
     for (Eigen::Index h = 0; h < series.size(); ++h)
-      out[static_cast<std::size_t>(n)] += (series[h] * std::polar(1.0, 2 * std::numbers::pi * static_cast<double>(h * n % count) / count)).real();
+      out[static_cast<std::size_t>(n)] +=
+          (series[h] * std::polar(1.0, 2 * std::numbers::pi * static_cast<double>(h * n % count) / count)).real();
   return out;
 }
 
@@ -68,12 +69,19 @@ inline void note_band(std::vector<band>& bands, double f, double spacing) {
 template <class Physics = full_physics, ReflectionFunction Near = rigid_end, ReflectionFunction Far = rigid_end>
 [[nodiscard]] outcome<periodic_motion> reconstruct_periodic(const bow_point& at, std::span<const double> near_N,
                                                             std::span<const double> far_N, const band& limits, double rate_Hz,
-                                                            const Near& near_end = {}, const Far& far_end = {}, double floor = 0.05) {
+                                                            const Near& near_end = {}, const Far& far_end = {},
+                                                            double floor = 0.05) {
   const double nominal = 0.5 / (at.delay_s[0] + at.delay_s[1]);
   outcome<periodic_part> part = find_periodic_part(near_N, far_N, rate_Hz, nominal, limits.stop_Hz);
   if (!part) return failure{part.error()};
-  periodic_motion out{.source = *std::move(part), .samples_per_period = 0, .force_near_N = {}, .force_far_N = {},
-                      .velocity_near_m_s = {}, .velocity_far_m_s = {}, .delta = 0, .regularised = {}};
+  periodic_motion out{.source = *std::move(part),
+                      .samples_per_period = 0,
+                      .force_near_N = {},
+                      .force_far_N = {},
+                      .velocity_near_m_s = {},
+                      .velocity_far_m_s = {},
+                      .delta = 0,
+                      .regularised = {}};
   const periodic_part& p = out.source;
   const typename Physics::kernel side1(at, 0, limits, rate_Hz), side2(at, 1, limits, rate_Hz);
   const double f0 = rate_Hz / p.period;
@@ -94,8 +102,9 @@ template <class Physics = full_physics, ReflectionFunction Near = rigid_end, Ref
     result[0][h] = 2 * G * Zw * (u1 - b2);
     result[1][h] = 2 * G * Zw * (u2 - b1);
     const std::complex<double> near_field =
-        Physics::near_field ? std::complex<double>(0, -near_field_ratio(w, at.stiffness_s2) / (2 * Zw * force_factor(w, at.stiffness_s2)))
-                            : std::complex<double>(0);
+        Physics::near_field
+            ? std::complex<double>(0, -near_field_ratio(w, at.stiffness_s2) / (2 * Zw * force_factor(w, at.stiffness_s2)))
+            : std::complex<double>(0);
     const std::complex<double> extra = near_field * (result[0][h] + result[1][h]) / 2.0;
     result[2][h] = u1 + b1 + extra;
     result[3][h] = u2 + b2 + extra;

@@ -3,7 +3,8 @@
 //
 // Time-domain reconstruction of a whole take, transient included: the transfer functions of bow_point_transfer.hpp as FIR kernels
 // within a band, run over the record by overlap-save. Nothing periodic is assumed. A sample whose kernel would reach beyond
-// the record is unknown (not a number), never made up. Where the ends move, their velocities (end_motion.hpp) come in beside the forces.
+// the record is unknown (not a number), never made up. Where the ends move, their velocities (end_motion.hpp) come in beside the
+// forces.
 //
 #pragma once
 
@@ -37,7 +38,8 @@ inline constexpr double kernel_error = 1e-6;
 
 /// Kernels for the transfer functions of a bow point; row-major.
 template <class Physics>
-[[nodiscard]] std::vector<fir> bow_point_kernels(const bow_point& at, const band& limits, double rate_Hz, double error = kernel_error) {
+[[nodiscard]] std::vector<fir> bow_point_kernels(const bow_point& at, const band& limits, double rate_Hz,
+                                                 double error = kernel_error) {
   const bow_point_transfer<Physics> transfer(at, limits, rate_Hz);
   const double longest = std::max(at.delay_s[0], at.delay_s[1]);
   const passage_lags lags = lags_of_passage(longest, at.stiffness_s2, limits, rate_Hz);
@@ -54,9 +56,7 @@ public:
       : convolver_(bow_point_transfer<Physics>::inputs, bow_point_kernels<Physics>(at, limits, rate_Hz, error)) {}
 
   /// Forces on rigid terminations in newtons, equally long.
-  [[nodiscard]] bow_motion<T> operator()(std::span<const T> near_N, std::span<const T> far_N)
-    requires(!Physics::moving_ends)
-  {
+  [[nodiscard]] bow_motion<T> operator()(std::span<const T> near_N, std::span<const T> far_N) requires(!Physics::moving_ends) {
     return (*this)(end_signals<T, Physics>{near_N, far_N});
   }
   [[nodiscard]] bow_motion<T> operator()(end_signals<T, Physics> in) {

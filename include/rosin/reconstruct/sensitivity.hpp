@@ -32,7 +32,8 @@ namespace detail {
 /// force, difference, velocity from the four outputs of the transfer: for one input column of `Inputs`.
 template <std::size_t Size, std::size_t Inputs = Size / 4>
 [[nodiscard]] std::array<std::complex<double>, 3> combine(const std::array<std::complex<double>, Size>& h, std::size_t input) {
-  return {(h[input] + h[Inputs + input]) / 2.0, h[input] - h[Inputs + input], (h[2 * Inputs + input] + h[3 * Inputs + input]) / 2.0};
+  return {(h[input] + h[Inputs + input]) / 2.0, h[input] - h[Inputs + input],
+          (h[2 * Inputs + input] + h[3 * Inputs + input]) / 2.0};
 }
 
 }  // namespace detail
@@ -55,7 +56,8 @@ template <class Physics>
       for (std::size_t input = 0; input < inputs; ++input) {
         const auto more = detail::combine(up, input), less = detail::combine(down, input);
         for (std::size_t quantity = 0; quantity < 3; ++quantity)
-          out[quantity * inputs + input] = is_gain ? more[quantity] * (input % 2 == 0 ? -0.5 : 0.5) : (more[quantity] - less[quantity]) / (2 * step[p]);
+          out[quantity * inputs + input] =
+              is_gain ? more[quantity] * (input % 2 == 0 ? -0.5 : 0.5) : (more[quantity] - less[quantity]) / (2 * step[p]);
       }
       return out;
     };
@@ -67,8 +69,8 @@ template <class Physics>
 
 /// Sensitivities over a take of calibrated forces (newtons), equally long. Samples near the ends count what lies beyond as zero.
 template <class Physics = full_physics>
-[[nodiscard]] reconstruction_sensitivity sensitivity(const calibration& c, const end_signals<double, Physics>& in, const band& limits,
-                                                     double rate_Hz) {
+[[nodiscard]] reconstruction_sensitivity sensitivity(const calibration& c, const end_signals<double, Physics>& in,
+                                                     const band& limits, double rate_Hz) {
   const std::size_t n = in[0].size();
   block_convolver<double> convolver(in.size(), sensitivity_kernels<Physics>(c, limits, rate_Hz));
   reconstruction_sensitivity out;

@@ -46,7 +46,8 @@ struct streaming_coefficients {
   std::size_t latency = 0;  ///< frames
 };
 
-/// T: float or double. Taps: longest filter. Line: length of the delay lines, at least the oldest age + 1 (checked in the design).
+/// T: float or double. Taps: longest filter. Line: length of the delay lines, at least the oldest age + 1 (checked in the
+/// design).
 template <class T, std::size_t Taps, std::size_t Line>
 class streaming_reconstructor {
 public:

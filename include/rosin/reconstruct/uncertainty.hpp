@@ -22,15 +22,16 @@ namespace rosin {
 /// Standard deviations of a reconstruction; vectors are as long as the take.
 struct reconstruction_uncertainty {
   std::vector<double> force_sd_N, velocity_sd_m_s;
-  double force_noise_N = 0, velocity_noise_m_s = 0;    ///< from sensor noise alone
-  double force_model_N = 0, velocity_model_m_s = 0;    ///< from what the two versions disagree in, and the convention of damping
-  double force_scale = 0, velocity_scale = 0;          ///< systematic, relative
+  double force_noise_N = 0, velocity_noise_m_s = 0;  ///< from sensor noise alone
+  double force_model_N = 0, velocity_model_m_s = 0;  ///< from what the two versions disagree in, and the convention of damping
+  double force_scale = 0, velocity_scale = 0;        ///< systematic, relative
 };
 
 namespace detail {
 
 /// Taps of a weighted sum of the four outputs' kernels from one input.
-[[nodiscard]] inline Eigen::VectorXd combined_taps(const std::vector<fir>& kernels, const std::array<double, 4>& weight, std::size_t input) {
+[[nodiscard]] inline Eigen::VectorXd combined_taps(const std::vector<fir>& kernels, const std::array<double, 4>& weight,
+                                                   std::size_t input) {
   const std::size_t inputs = kernels.size() / 4;
   int first = 0, last = 0;
   for (std::size_t p = 0; p < 4; ++p) {
@@ -66,8 +67,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// `noise_N`: of the calibrated channels. `motion` is what the reconstructor made of the same take. `covariance`: of the columns of
-/// `s`; empty: the calibration's.
+/// `noise_N`: of the calibrated channels. `motion` is what the reconstructor made of the same take. `covariance`: of the columns
+/// of `s`; empty: the calibration's.
 template <class Physics = full_physics>
 [[nodiscard]] reconstruction_uncertainty uncertainty(const calibration& c, const bow_motion<double>& motion,
                                                      const reconstruction_sensitivity& s, const std::array<double, 2>& noise_N,
@@ -83,7 +84,9 @@ template <class Physics = full_physics>
   const Eigen::VectorXd of_force = (s.force * C).cwiseProduct(s.force).rowwise().sum();
   const Eigen::VectorXd of_velocity = (s.velocity * C).cwiseProduct(s.velocity).rowwise().sum();
   const auto known = [&](const Eigen::VectorXd& v) {
-    return v.segment(static_cast<Eigen::Index>(motion.known.begin), static_cast<Eigen::Index>(motion.known.end - motion.known.begin)).mean();
+    return v
+        .segment(static_cast<Eigen::Index>(motion.known.begin), static_cast<Eigen::Index>(motion.known.end - motion.known.begin))
+        .mean();
   };
   const Eigen::VectorXd of_difference = (s.difference * C).cwiseProduct(s.difference).rowwise().sum();
   const double seen = detail::rms_of(motion.force_near_N, -1, motion.force_far_N, motion.known);
@@ -94,7 +97,8 @@ template <class Physics = full_physics>
     const double seen_v = detail::rms_of(motion.velocity_near_m_s, -1, motion.velocity_far_m_s, motion.known);
     out.velocity_model_m_s = seen > 0 ? out.force_model_N * seen_v / seen : 0.0;
     const double turn = c.at.loss.inverse_q(0.5 / (c.at.delay_s[0] + c.at.delay_s[1])) / 2;
-    out.force_model_N = std::hypot(out.force_model_N, turn / 2 * detail::rms_of(motion.force_near_N, 1, motion.force_far_N, motion.known));
+    out.force_model_N =
+        std::hypot(out.force_model_N, turn / 2 * detail::rms_of(motion.force_near_N, 1, motion.force_far_N, motion.known));
     out.velocity_model_m_s = std::hypot(
         out.velocity_model_m_s, turn / 2 * detail::rms_of(motion.velocity_near_m_s, 1, motion.velocity_far_m_s, motion.known));
   }
@@ -103,7 +107,8 @@ template <class Physics = full_physics>
   out.velocity_sd_m_s.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    out.force_sd_N[i] = std::sqrt(out.force_noise_N * out.force_noise_N + out.force_model_N * out.force_model_N + std::max(0.0, of_force[k]));
+    out.force_sd_N[i] =
+        std::sqrt(out.force_noise_N * out.force_noise_N + out.force_model_N * out.force_model_N + std::max(0.0, of_force[k]));
     out.velocity_sd_m_s[i] = std::sqrt(out.velocity_noise_m_s * out.velocity_noise_m_s +
                                        out.velocity_model_m_s * out.velocity_model_m_s + std::max(0.0, of_velocity[k]));
   }

@@ -6,8 +6,8 @@
 //     quadratic share -> the sensor's own resonance -> leakage between the channels -> the far channel comes late, or has a clock of its own
 //
 // (the first two the other way about where it rings first).
-// The resonance w0^2 / (s^2 + s w0/q + w0^2) is stepped exactly for a force that is straight within a step; what comes late is read
-// from a cubic through four steps. Gain, AC coupling, hum, noise and rounding are the converter's (converter.hpp).
+// The resonance w0^2 / (s^2 + s w0/q + w0^2) is stepped exactly for a force that is straight within a step; what comes late is
+// read from a cubic through four steps. Gain, AC coupling, hum, noise and rounding are the converter's (converter.hpp).
 //
 #pragma once
 
@@ -22,9 +22,9 @@ namespace rosin {
 struct sensor_faults {
   std::array<double, 2> quadratic_per_N{}, resonance_Hz{}, resonance_q{10, 10};  ///< near, far; resonance 0: none
   std::array<bool, 2> rings_first{};  ///< and bends what rings; else the other way about
-  double crosstalk = 0;  ///< share of each channel in the other
-  double skew_s = 0;     ///< the far channel comes late by this
-  double clock_drift = 0;  ///< its clock is fast by this, relative
+  double crosstalk = 0;               ///< share of each channel in the other
+  double skew_s = 0;                  ///< the far channel comes late by this
+  double clock_drift = 0;             ///< its clock is fast by this, relative
 };
 
 namespace detail {
@@ -41,8 +41,10 @@ inline void ring_along(std::vector<double>& x, double frequency_Hz, double q, do
   std::vector<double> out(x.size());
   const auto at = [&](double n) { return x[static_cast<std::size_t>(std::clamp(n, 0.0, static_cast<double>(x.size() - 1)))]; };
   for (std::size_t n = 0; n < x.size(); ++n) {
-    const double place = static_cast<double>(n) * slope + offset, i = std::floor(place), u = place - i, a = at(i - 1), b = at(i), c = at(i + 1), d = at(i + 2);
-    out[n] = -u * (u - 1) * (u - 2) / 6 * a + (u + 1) * (u - 1) * (u - 2) / 2 * b - (u + 1) * u * (u - 2) / 2 * c + (u + 1) * u * (u - 1) / 6 * d;
+    const double place = static_cast<double>(n) * slope + offset, i = std::floor(place), u = place - i, a = at(i - 1), b = at(i),
+                 c = at(i + 1), d = at(i + 2);
+    out[n] = -u * (u - 1) * (u - 2) / 6 * a + (u + 1) * (u - 1) * (u - 2) / 2 * b - (u + 1) * u * (u - 2) / 2 * c +
+             (u + 1) * u * (u - 1) / 6 * d;
   }
   return out;
 }
@@ -67,7 +69,8 @@ inline void disturb(std::array<std::vector<double>, 2>& end_N, const sensor_faul
       end_N[1][n] += faults.crosstalk * near;
     }
   if (faults.skew_s != 0) end_N[1] = detail::read_along(end_N[1], 1, -faults.skew_s / step_s);
-  if (const double slope = 1 / (1 + faults.clock_drift); slope != 1) end_N[1] = detail::read_along(end_N[1], slope, (1 - slope) * begin_s / step_s);
+  if (const double slope = 1 / (1 + faults.clock_drift); slope != 1)
+    end_N[1] = detail::read_along(end_N[1], slope, (1 - slope) * begin_s / step_s);
 }
 
 }  // namespace rosin

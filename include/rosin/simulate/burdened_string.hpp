@@ -11,7 +11,7 @@
 // Unknown in every step besides the contacts' forces are the loads' f and g = -u'' of the ends; whatever is linear in
 // them goes into one small matrix that is inverted beforehand:
 //
-//     load:   f + alpha v(f, g) = -beta,    alpha = 3 M / 2h + R + K h / 2,    v' = (3 v - 4 v_0 + v_-1) / 2h
+//     load:   f + alpha v(f, g) = -beta     (moving_load.hpp)
 //     end:    D g + F_end(f, g) = r         (moving_support.hpp).
 //
 // Ends that resist turning (`clamping`) have the modes of modal_string.hpp instead of the sines.
@@ -21,18 +21,11 @@
 #pragma once
 
 #include <rosin/propagate/termination.hpp>
+#include <rosin/simulate/moving_load.hpp>
 #include <rosin/simulate/moving_support.hpp>
 #include <rosin/simulate/port_bank.hpp>
 
-#include <utility>
-
 namespace rosin {
-
-/// A lump on the string: mass, damper and spring in parallel.
-struct point_load {
-  double position = 0.5;  ///< distance from the near end / length
-  double mass_kg = 0, resistance_Ns_m = 0, stiffness_N_m = 0;
-};
 
 /// A stop beside the string that a pluck may swing against: a stiff spring that only pushes.
 struct obstacle {
@@ -45,19 +38,24 @@ struct obstacle {
 struct string_burden {
   std::vector<point_load> loads{};
   std::array<yielding_support, 2> supports{};  ///< near, far
-  std::array<modal_termination, 2> ends{};     ///< the same as terminations are declared: any number of modes, masses against the string's Z
+  /// the same as terminations are declared: any number of modes, masses against the string's Z
+  std::array<modal_termination, 2> ends{};
   double axial_stiffness_N = 0;                ///< E A; 0: the tension is steady
   std::array<double, 2> sensed_stiffness_N{};  ///< what near and far sensor read per unit of the string's strain
   obstacle stop{};                             ///< in the way of plucks
-  std::array<double, 2> clamping{};            ///< of near and far end against turning, 0 to 1 (modal_string.hpp): on ends that do not move, with a steady tension
+  /// of near and far end against turning, 0 to 1 (modal_string.hpp): on ends that do not move, with a steady tension
+  std::array<double, 2> clamping{};
 };
 
 class burdened_string {
 public:
   /// Forces may act on the string at `contacts` (distance from the near end / length).
-  burdened_string(const modal_rig& rig, const string_burden& burden, const std::vector<double>& contacts, double mode_limit_Hz, double step_s)
+  burdened_string(const modal_rig& rig, const string_burden& burden, const std::vector<double>& contacts, double mode_limit_Hz,
+                  double step_s)
       : stretch_{rig.string.tension_N / rig.string.length_m}, step_{step_s}, contacts_{static_cast<int>(contacts.size())},
-        clamping_{burden.clamping}, limit_Hz_{mode_limit_Hz}, bank_{rig, burden.axial_stiffness_N, mode_limit_Hz, step_s, burden.clamping}, positions_{contacts}, sensed_N_{burden.sensed_stiffness_N[0], burden.sensed_stiffness_N[1]} {
+        clamping_{burden.clamping}, limit_Hz_{mode_limit_Hz}, bank_{rig, burden.axial_stiffness_N, mode_limit_Hz, step_s,
+                                                                    burden.clamping},
+        positions_{contacts}, sensed_N_{burden.sensed_stiffness_N[0], burden.sensed_stiffness_N[1]} {
     for (const auto& load : burden.loads) loads_.push_back({load}), positions_.push_back(load.position);
     for (int e = 0; e < 2; ++e) add_end(burden, e, rig.string.impedance_Ns_m());
     set_ports(rig);
@@ -68,7 +66,8 @@ public:
   /// At rest under these forces at the contacts.
   void rest_under(const Eigen::VectorXd& force) {
     const int n = unknowns(), l = load_count();
-    const auto miss = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& f) {  // x: the loads' forces, the supports' displacements
+    // x: the loads' forces, the supports' displacements
+    const auto miss = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& f) {
       const Eigen::VectorXd y = deflection(f, x);
       Eigen::VectorXd r(n);
       for (int i = 0; i < l; ++i) r[i] = x[i] + loads_[static_cast<std::size_t>(i)].load.stiffness_N_m * y[contacts_ + i];
@@ -110,7 +109,7 @@ public:
   void add_tension(double across_N) noexcept { bank_.add_tension(across_N); }
 
   struct reading {
-    Eigen::Vector2d end_N;                 ///< forces on near and far end
+    Eigen::Vector2d end_N;                   ///< forces on near and far end
     Eigen::VectorXd surface_m_s, twist_m_s;  ///< at the contacts, of the modes alone; the centre moves with the difference
   };
   /// After free_velocity(): ends the step with these forces at the contacts and begins the next.
@@ -121,7 +120,8 @@ public:
     const Eigen::VectorXd v = free_ + mobility_ * all;
     move(v, all);
     const Eigen::VectorXd rate = (force - last_.head(contacts_)) / step_;
-    reading out{free_end_ + end_gain_ * all, v.head(contacts_) - rest_.head(contacts_).cwiseProduct(rate), Eigen::VectorXd(contacts_)};
+    reading out{free_end_ + end_gain_ * all, v.head(contacts_) - rest_.head(contacts_).cwiseProduct(rate),
+                Eigen::VectorXd(contacts_)};
     Eigen::Vector2d u = Eigen::Vector2d::Zero();
     for (const auto& m : ends_) u[m.side] = m.sum(&moving_mode::u);
     out.end_N += stretch_ * Eigen::Vector2d{u[1] - u[0], u[0] - u[1]};
@@ -133,8 +133,8 @@ public:
     return out;
   }
 
-  /// After advance() with these forces at the contacts: they are gone at once. Returns by how much the forces on the ends fall with
-  /// them, which is the share of the modes left out.
+  /// After advance() with these forces at the contacts: they are gone at once. Returns by how much the forces on the ends fall
+  /// with them, which is the share of the modes left out.
   Eigen::Vector2d let_go(const Eigen::VectorXd& force) {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(contacts_ + unknowns());
     all.head(contacts_) = force;
@@ -145,10 +145,6 @@ public:
   }
 
 private:
-  struct moving_load {
-    point_load load;
-    double v = 0, v_before = 0, y = 0;
-  };
   void add_end(const string_burden& burden, int side, double impedance_Ns_m) {
     const auto e = static_cast<std::size_t>(side);
     moving_support end{side, {}};
@@ -167,7 +163,6 @@ private:
     const double x = positions_[static_cast<std::size_t>(i)];
     return e.side == 0 ? 1 - x : x;
   }
-  [[nodiscard]] double alpha(const point_load& p) const noexcept { return 1.5 * p.mass_kg / step_ + p.resistance_Ns_m + p.stiffness_N_m * step_ / 2; }
 
   void set_ports(const modal_rig& rig) {
     const int p = points(), all = contacts_ + unknowns();
@@ -194,10 +189,12 @@ private:
       const double x = positions_[static_cast<std::size_t>(j)];
       const auto held = static_end_forces(rig.string, x, clamping_);
       rest_end_.col(j) += Eigen::Vector2d{held[0], held[1]};
-      rest_[j] = clamping_ == std::array<double, 2>{} ? static_compliance_m_N(rig.string, x) - bank_.compliance(j, j)
-                                                      : residual_compliance_m_N(rig.string, x, limit_Hz_);  // so high, no end is heard
+      rest_[j] = clamping_ == std::array<double, 2>{}
+                     ? static_compliance_m_N(rig.string, x) - bank_.compliance(j, j)
+                     : residual_compliance_m_N(rig.string, x, limit_Hz_);  // so high, no end is heard
       if (j >= contacts_ || !rig.torsion.present()) continue;
-      rest_twist_[j] = x * (1 - x) / (rig.torsion.impedance_ratio * rig.torsion.speed_ratio * stretch_) - bank_.twist_compliance(j, j);
+      rest_twist_[j] =
+          x * (1 - x) / (rig.torsion.impedance_ratio * rig.torsion.speed_ratio * stretch_) - bank_.twist_compliance(j, j);
       rest_[j] += rest_twist_[j];
     }
     for (int j = p; j < all; ++j) {
@@ -214,7 +211,7 @@ private:
     Eigen::MatrixXd a(n, n);
     drive_.setZero(n, c);
     for (int i = 0; i < l; ++i) {
-      const double by = alpha(loads_[static_cast<std::size_t>(i)].load);
+      const double by = loads_[static_cast<std::size_t>(i)].alpha(step_);
       a.row(i) = by * mobility_.block(c + i, c, 1, n);
       a(i, i) += 1;
       drive_.row(i) = by * mobility_.block(c + i, 0, 1, c);
@@ -234,8 +231,8 @@ private:
     const int l = load_count(), n = unknowns();
     Eigen::VectorXd b(n);
     for (int i = 0; i < l; ++i) {
-      const auto& [load, v, before, y] = loads_[static_cast<std::size_t>(i)];
-      b[i] = -alpha(load) * free_[contacts_ + i] - load.mass_kg * (before - 4 * v) / (2 * step_) - load.stiffness_N_m * (y + step_ * v / 2);
+      const moving_load& m = loads_[static_cast<std::size_t>(i)];
+      b[i] = -m.alpha(step_) * free_[contacts_ + i] - m.beta(step_);
     }
     for (int i = l; i < n; ++i) {
       const auto& e = end(i - l);
@@ -246,12 +243,7 @@ private:
   }
 
   void move(const Eigen::VectorXd& v, const Eigen::VectorXd& force) {
-    for (int i = 0; i < load_count(); ++i) {
-      auto& m = loads_[static_cast<std::size_t>(i)];
-      const double now = v[contacts_ + i];
-      m.y += step_ * (m.v + now) / 2;
-      m.v_before = std::exchange(m.v, now);
-    }
+    for (int i = 0; i < load_count(); ++i) loads_[static_cast<std::size_t>(i)].move(step_, v[contacts_ + i]);
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       const auto [inertia, held] = ends_[i].inertia_and_force(step_);
       ends_[i].move(step_, held - inertia * force[points() + static_cast<Eigen::Index>(i)]);

@@ -23,8 +23,8 @@ struct burdened_steps {
   std::array<std::vector<double>, 2> end_N{};
   std::vector<double> force_N{}, centre_m_s{}, twist_m_s{}, rod_m_s{};
   double centre_left_out_m_N = 0, twist_left_out_m_N = 0;  ///< the velocities lack these times the rate of the force
-  std::vector<double> temperature_K{};  ///< rise, where the law has one
-  std::vector<double> raised_N{};       ///< what a pluck's motion adds to the tension, where E A is known
+  std::vector<double> temperature_K{};                     ///< rise, where the law has one
+  std::vector<double> raised_N{};                          ///< what a pluck's motion adds to the tension, where E A is known
   std::size_t slips = 0, unconverged = 0;
   double slipping = 0;  ///< share of the second half's steps
 
@@ -39,8 +39,8 @@ struct burdened_pluck {
   double width_m = 0;  ///< that the wire grips, evenly
 };
 
-/// Places (distance from the near end / length) and shares of a wire's force: three points have an even force's moments to the fifth
-/// (Gauss and Legendre).
+/// Places (distance from the near end / length) and shares of a wire's force: three points have an even force's moments to the
+/// fifth (Gauss and Legendre).
 [[nodiscard]] inline std::vector<std::array<double, 2>> grip_of(const burdened_pluck& p, double length_m) {
   if (!(p.width_m > 0)) return {{p.position, 1}};
   const double apart = std::sqrt(0.6) * p.width_m / 2 / length_m;
@@ -74,11 +74,13 @@ private:
   double side_, y_, v_ = 0;
 };
 
-/// A sudden release happens at the step nearest to it, and there at once: were it spread over a step, every pluck's spectrum would fall
-/// towards high frequencies by another amount (a thousandth at 50 kHz and 0.5 us), as no two releases lie alike between the steps.
-/// `across_N`: what motion in another plane adds to the tension, step by step (of the last one from there on); needs E A.
-[[nodiscard]] inline burdened_steps step_pluck(const modal_rig& rig, const string_burden& burden, const burdened_pluck& pluck, double duration_s, double mode_limit_Hz,
-                                               double step_s, std::span<const double> across_N = {}) {
+/// A sudden release happens at the step nearest to it, and there at once: were it spread over a step, every pluck's spectrum
+/// would fall towards high frequencies by another amount (a thousandth at 50 kHz and 0.5 us), as no two releases lie alike
+/// between the steps. `across_N`: what motion in another plane adds to the tension, step by step (of the last one from there on);
+/// needs E A.
+[[nodiscard]] inline burdened_steps step_pluck(const modal_rig& rig, const string_burden& burden, const burdened_pluck& pluck,
+                                               double duration_s, double mode_limit_Hz, double step_s,
+                                               std::span<const double> across_N = {}) {
   const auto grip = grip_of(pluck, rig.string.length_m);
   const bool guarded = burden.stop.stiffness_N_m > 0;
   const auto wires = static_cast<Eigen::Index>(grip.size()), contacts = wires + (guarded ? 1 : 0);
@@ -101,7 +103,9 @@ private:
     if (!across_N.empty()) string.add_tension(across_N[std::min(n, across_N.size() - 1)]);
     const Eigen::VectorXd free = string.free_velocity();
     Eigen::VectorXd forces = share * force;
-    if (guarded) forces[wires] = point.force_N(free[wires] + string.mobility().row(wires).dot(share) * force, string.mobility()(wires, wires), step_s);
+    if (guarded)
+      forces[wires] =
+          point.force_N(free[wires] + string.mobility().row(wires).dot(share) * force, string.mobility()(wires, wires), step_s);
     auto now = string.advance(forces);
     if (guarded) point.move(now.surface_m_s[wires], step_s);
     if (sudden && n == release) now.end_N -= 0.5 * string.let_go(share * force), force /= 2;  // the middle of a jump
@@ -113,10 +117,12 @@ private:
   return out;
 }
 
-/// A pluck that moves a string in two planes, which differ in pitch: what each of them does by itself. Where motion stretches the string, each
-/// also feels what the other's adds to the tension; the first is stepped once more with what the second then does.
-[[nodiscard]] inline std::array<burdened_steps, 2> step_planes(const modal_rig& along, const burdened_pluck& wire, const modal_rig& across, const burdened_pluck& other,
-                                                               const string_burden& burden, double duration_s, double mode_limit_Hz, double step_s) {
+/// A pluck that moves a string in two planes, which differ in pitch: what each of them does by itself. Where motion stretches the
+/// string, each also feels what the other's adds to the tension; the first is stepped once more with what the second then does.
+[[nodiscard]] inline std::array<burdened_steps, 2> step_planes(const modal_rig& along, const burdened_pluck& wire,
+                                                               const modal_rig& across, const burdened_pluck& other,
+                                                               const string_burden& burden, double duration_s,
+                                                               double mode_limit_Hz, double step_s) {
   std::array<burdened_steps, 2> out{step_pluck(along, burden, wire, duration_s, mode_limit_Hz, step_s), {}};
   out[1] = step_pluck(across, burden, other, duration_s, mode_limit_Hz, step_s, out[0].raised_N);
   if (burden.axial_stiffness_N > 0) out[0] = step_pluck(along, burden, wire, duration_s, mode_limit_Hz, step_s, out[1].raised_N);
@@ -126,17 +132,20 @@ private:
 /// The rod's or bow's own give: a mass on a spring along its motion. None where the mass is 0.
 using yielding_rod = yielding_support;
 
-/// A stroke: `width_m` 0 is one contact, otherwise two, width_m apart, that share the normal force. Nothing happens for `still` steps, from
-/// which on the motion's time counts.
+/// A stroke: `width_m` 0 is one contact, otherwise two, width_m apart, that share the normal force. Nothing happens for `still`
+/// steps, from which on the motion's time counts.
 template <FrictionLaw Law, class Motion>
-[[nodiscard]] burdened_steps step_stroke(const modal_rig& rig, const string_burden& burden, Law law, const Motion& motion, const yielding_rod& rod, double position,
-                                         double width_m, double duration_s, double mode_limit_Hz, double step_s, std::size_t still = 0) {
+[[nodiscard]] burdened_steps step_stroke(const modal_rig& rig, const string_burden& burden, Law law, const Motion& motion,
+                                         const yielding_rod& rod, double position, double width_m, double duration_s,
+                                         double mode_limit_Hz, double step_s, std::size_t still = 0) {
   const double half = width_m / rig.string.length_m / 2;
-  const std::vector<double> at = width_m > 0 ? std::vector<double>{position - half, position + half} : std::vector<double>{position};
+  const std::vector<double> at =
+      width_m > 0 ? std::vector<double>{position - half, position + half} : std::vector<double>{position};
   const auto contacts = static_cast<Eigen::Index>(at.size());
   burdened_string string{rig, burden, at, mode_limit_Hz, step_s};
   driven_mode gives;
-  if (rod.mass_kg > 0) gives = driven_mode({1, 2 * 3.14159265358979323846 * rod.frequency_Hz, 1 / rod.quality, rod.mass_kg, 0}, step_s);
+  if (rod.mass_kg > 0)
+    gives = driven_mode({1, 2 * 3.14159265358979323846 * rod.frequency_Hz, 1 / rod.quality, rod.mass_kg, 0}, step_s);
   law.reset();
   std::vector<Law> laws(at.size(), law);
   burdened_steps out{.step_s = step_s,  // the contacts share the force alike
@@ -148,7 +157,9 @@ template <FrictionLaw Law, class Motion>
   std::size_t slipped = 0;
   const std::size_t end = detail::pressed_steps(motion, still, steps, step_s);
   bool before = false;
-  for (auto* signal : {&out.end_N[0], &out.end_N[1], &out.force_N, &out.centre_m_s, &out.twist_m_s, &out.rod_m_s, &out.temperature_K}) signal->assign(still, 0.0);
+  for (auto* signal :
+       {&out.end_N[0], &out.end_N[1], &out.force_N, &out.centre_m_s, &out.twist_m_s, &out.rod_m_s, &out.temperature_K})
+    signal->assign(still, 0.0);
   for (std::size_t n = still; n < steps; ++n) {
     const auto state = motion(static_cast<double>(n - still) * step_s);
     const Eigen::VectorXd free = string.free_velocity();
@@ -157,7 +168,8 @@ template <FrictionLaw Law, class Motion>
       double v = free[i] + gives.free();
       for (Eigen::Index j = 0; j < contacts; ++j)
         if (j != i) v += (mobility(i, j) + gives.mobility()) * force[j];
-      return l(load_line<double>{v, mobility(i, i) + gives.mobility(), state.velocity_m_s, state.normal_force_N / static_cast<double>(contacts), step_s});
+      return l(load_line<double>{v, mobility(i, i) + gives.mobility(), state.velocity_m_s,
+                                 state.normal_force_N / static_cast<double>(contacts), step_s});
     };
     bool slipping = false, solved = true;
     double warmest = 0;

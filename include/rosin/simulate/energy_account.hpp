@@ -6,10 +6,10 @@
 //
 //     received = int g q' dt,     lost = m w / Q int q'^2 dt,     g = f(t) sin(k x(t)),
 //
-// neither of them from the other or from the energy, so that received = stored + lost is a check. g runs straight over a step, as in
-// modal_bank.hpp; then q' is known at every instant from z = q' + i (...) and g at the step's ends, and both integrals are quadratic
-// forms of (Re z, Im z, g_begin, g_end), found once per mode by Gauss quadrature. All that has to be summed along the take are
-// the products of these four.
+// neither of them from the other or from the energy, so that received = stored + lost is a check. g runs straight over a step, as
+// in modal_bank.hpp; then q' is known at every instant from z = q' + i (...) and g at the step's ends, and both integrals are
+// quadratic forms of (Re z, Im z, g_begin, g_end), found once per mode by Gauss quadrature. All that has to be summed along the
+// take are the products of these four.
 //
 #pragma once
 
@@ -37,7 +37,8 @@ struct step_energy {
       for (std::size_t j = 0; j < 4; ++j) {
         const double u = (i + gauss4::node[j]) / panels, weight = gauss4::weight[j] / panels * step_s;
         const auto r = respond_over_step(mode, u * step_s);
-        const Eigen::Vector4d velocity{r.decay.real(), -r.decay.imag(), r.begin.real() + (1 - u) * r.end.real(), u * r.end.real()};
+        const Eigen::Vector4d velocity{r.decay.real(), -r.decay.imag(), r.begin.real() + (1 - u) * r.end.real(),
+                                       u * r.end.real()};
         received += weight * Eigen::Vector4d{0, 0, 1 - u, u} * velocity.transpose();
         lost += weight * drag * velocity * velocity.transpose();
       }
@@ -91,7 +92,8 @@ private:
   using pack = Eigen::Array<double, static_cast<int>(width), 1>;
 
   struct lane {
-    pack turn_re = pack::Zero(), turn_im = pack::Zero(), begin_re = pack::Zero(), begin_im = pack::Zero(), end_re = pack::Zero(), end_im = pack::Zero();
+    pack turn_re = pack::Zero(), turn_im = pack::Zero(), begin_re = pack::Zero(), begin_im = pack::Zero(), end_re = pack::Zero(),
+         end_im = pack::Zero();
     std::array<pack, 3> x{pack::Zero(), pack::Zero(), pack::Zero()};  ///< Re z, Im z, g, as they are now
     std::array<pack, 10> products{};
     lane() { products.fill(pack::Zero()); }
@@ -111,7 +113,8 @@ private:
       const double angle = pi * position * static_cast<double>(n + 1);
       s.sine[static_cast<Eigen::Index>(n)] = std::sin(angle), s.cosine[static_cast<Eigen::Index>(n)] = std::cos(angle);
     }
-    s.turn_sine = std::sin(pi * position * static_cast<double>(width)), s.turn_cosine = std::cos(pi * position * static_cast<double>(width));
+    s.turn_sine = std::sin(pi * position * static_cast<double>(width)),
+    s.turn_cosine = std::cos(pi * position * static_cast<double>(width));
     first_ = s;
   }
 

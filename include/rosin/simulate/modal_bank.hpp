@@ -73,8 +73,8 @@ public:
   /// State at the end of the step under way if no force acts there.
   [[nodiscard]] const bank_reading<Ports>& free() const noexcept { return free_; }
 
-  /// The ports from now on, for the step under way as well: after advance() and before anything is read. Precondition: the modes are
-  /// numbered from 1 without gaps.
+  /// The ports from now on, for the step under way as well: after advance() and before anything is read. Precondition: the modes
+  /// are numbered from 1 without gaps.
   void move_to(const values& positions) noexcept {
     mobility_ = {}, near_gain_ = {}, far_gain_ = {}, compliance_ = {}, near_share_ = {}, far_share_ = {}, free_.velocity = {};
     move_lanes(0, odd_, 1, 1, positions);
@@ -184,7 +184,8 @@ private:
         const double angle = pi * std::fmod((number + 2 * n) * positions[j], 2.0);
         sine[n] = std::sin(angle), cosine[n] = std::cos(angle);
       }
-      const double angle = pi * std::fmod(2 * width * positions[j], 2.0), turn_sine = std::sin(angle), turn_cosine = std::cos(angle);
+      const double angle = pi * std::fmod(2 * width * positions[j], 2.0), turn_sine = std::sin(angle),
+                   turn_cosine = std::cos(angle);
       for (std::size_t i = first; i < last; ++i) {
         lanes_[i].shape[j] = sine;
         const pack turned = sine * turn_cosine + cosine * turn_sine;
@@ -202,7 +203,8 @@ private:
       const answers& once = answers_[i];
       const pack& s = l.shape[j];
       for (std::size_t k = 0; k < ports; ++k) sum.mobility[k] += s * l.shape[k] * once.velocity;
-      sum.end += s * once.end, sum.compliance += s * s * once.deflection, sum.share += s * once.end_at_rest, sum.velocity += s * l.re;
+      sum.end += s * once.end, sum.compliance += s * s * once.deflection, sum.share += s * once.end_at_rest,
+          sum.velocity += s * l.re;
     }
     for (std::size_t k = 0; k < ports; ++k) mobility_[j][k] += total(sum.mobility[k]);
     near_gain_[j] += total(sum.end), far_gain_[j] += parity * total(sum.end);

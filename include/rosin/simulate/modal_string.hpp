@@ -12,8 +12,8 @@
 // the ends then also feel the stress that belongs to q' / (w_n Q_n). At equal Q the two differ by a turn of 1 / Q
 // in phase, which a good pluck can tell apart.
 //
-// An end that resists turning with the moment k y' has `clamping` k / (k + sqrt(B T)), 0 pinned, 1 clamped. With q^2 and -kappa^2 the roots
-// of B r^2 - T r = m w^2 the modes are then, but for e^(-kappa L),
+// An end that resists turning with the moment k y' has `clamping` k / (k + sqrt(B T)), 0 pinned, 1 clamped. With q^2 and -kappa^2
+// the roots of B r^2 - T r = m w^2 the modes are then, but for e^(-kappa L),
 //
 //     sin(q x - a) + sin(a) e^(-kappa x) +- sin(a') e^(-kappa (L - x)),    q L = n pi + a + a',    B (q^2 + kappa^2) sin a = k (q cos a - kappa sin a).
 //
@@ -53,10 +53,10 @@ struct string_mode {
   double omega_rad_s = 0;      ///< undamped
   double inverse_quality = 0;  ///< 1 / Q, below 2
   double mass_kg = 0;
-  double end_stiffness_N_m = 0;  ///< force on the near end for q = 1 m
-  double far_over_near = 1;      ///< the same for the far end, but for the parity
+  double end_stiffness_N_m = 0;       ///< force on the near end for q = 1 m
+  double far_over_near = 1;           ///< the same for the far end, but for the parity
   std::array<double, 2> ahead_rad{};  ///< a and a', where the ends resist turning
-  double near_fields = 0;        ///< kappa L, there
+  double near_fields = 0;             ///< kappa L, there
 
   [[nodiscard]] std::complex<double> pole() const noexcept {
     const double half = inverse_quality / 2;
@@ -66,7 +66,8 @@ struct string_mode {
   [[nodiscard]] double shape(double position) const noexcept {
     constexpr double pi = 3.14159265358979323846;
     if (near_fields == 0) return std::sin(pi * std::fmod(number * position, 2.0));
-    return std::sin((number * pi + ahead_rad[0] + ahead_rad[1]) * position - ahead_rad[0]) + std::sin(ahead_rad[0]) * std::exp(-near_fields * position) +
+    return std::sin((number * pi + ahead_rad[0] + ahead_rad[1]) * position - ahead_rad[0]) +
+           std::sin(ahead_rad[0]) * std::exp(-near_fields * position) +
            parity() * std::sin(ahead_rad[1]) * std::exp(-near_fields * (1 - position));
   }
   /// +1 or -1: force on the far end against force on the near end.
@@ -98,7 +99,8 @@ namespace detail {
   for (int i = 0; i < 60; ++i) {
     kappa = std::hypot(q, still);
     for (std::size_t e = 0; e < 2; ++e)
-      m.ahead_rad[e] = std::atan2(clamping[e] * still * q, (1 - clamping[e]) * (q * q + kappa * kappa) + clamping[e] * still * kappa);
+      m.ahead_rad[e] =
+          std::atan2(clamping[e] * still * q, (1 - clamping[e]) * (q * q + kappa * kappa) + clamping[e] * still * kappa);
     const double next = (n * pi + m.ahead_rad[0] + m.ahead_rad[1]) / L;
     if (std::abs(next - q) < 1e-15 * q) break;
     q = next;
@@ -121,7 +123,8 @@ namespace detail {
 }  // namespace detail
 
 /// Transverse modes up to a frequency, of a stiff string whose ends resist turning.
-[[nodiscard]] inline std::vector<string_mode> transverse_modes(const string_parameters& string, double limit_Hz, const std::array<double, 2>& clamping) {
+[[nodiscard]] inline std::vector<string_mode> transverse_modes(const string_parameters& string, double limit_Hz,
+                                                               const std::array<double, 2>& clamping) {
   if (clamping == std::array<double, 2>{} || !(string.bending_stiffness_Nm2 > 0)) return transverse_modes(string, limit_Hz);
   std::vector<string_mode> modes;
   for (int n = 1;; ++n) {
@@ -131,7 +134,8 @@ namespace detail {
 }
 
 /// Forces on near and far end for a steady 1 N at `position`, likewise: an end takes clamping sqrt(B / T) from the length.
-[[nodiscard]] inline std::array<double, 2> static_end_forces(const string_parameters& string, double position, const std::array<double, 2>& clamping) noexcept {
+[[nodiscard]] inline std::array<double, 2> static_end_forces(const string_parameters& string, double position,
+                                                             const std::array<double, 2>& clamping) noexcept {
   const double reach = std::sqrt(string.bending_stiffness_Nm2 / string.tension_N) / string.length_m;
   const double far = (position - clamping[0] * reach) / (1 - (clamping[0] + clamping[1]) * reach);
   return {1 - far, far};

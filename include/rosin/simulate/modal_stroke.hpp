@@ -24,8 +24,8 @@ concept RodMotion = std::copyable<M> && requires(const M& motion, double t) {
   noexcept->std::same_as<rod_state>;
 };
 
-/// One that may also travel along the string: its place (distance from the near end / length) as a function of time. Where travels() is
-/// false it stays where the stroke has it.
+/// One that may also travel along the string: its place (distance from the near end / length) as a function of time. Where
+/// travels() is false it stays where the stroke has it.
 template <class M>
 concept TravellingRod = RodMotion<M> && requires(const M& motion, double t) {
   { motion.travels() }
@@ -151,14 +151,16 @@ inline void sample_steps(modal_take& take, const stroke_steps& s, const modal_de
 }
 
 /// Integral of a b over the take, both straight between the steps.
-[[nodiscard]] inline double integral_of_product(const std::vector<double>& a, const std::vector<double>& b, double step_s) noexcept {
+[[nodiscard]] inline double integral_of_product(const std::vector<double>& a, const std::vector<double>& b,
+                                                double step_s) noexcept {
   double sum = 0;
   for (std::size_t i = 1; i < a.size(); ++i) sum += 2 * (a[i - 1] * b[i - 1] + a[i] * b[i]) + a[i - 1] * b[i] + a[i] * b[i - 1];
   return sum * step_s / 6;
 }
 
 [[nodiscard]] inline stroke_energy account_of(const modal_rig& rig, const stroke_steps& s, double limit_Hz, double step_s) {
-  stroke_energy out{.rod_J = integral_of_product(s.force, s.rod, step_s), .friction_J = -integral_of_product(s.force, s.slip, step_s)};
+  stroke_energy out{.rod_J = integral_of_product(s.force, s.rod, step_s),
+                    .friction_J = -integral_of_product(s.force, s.slip, step_s)};
   energy_account transverse{transverse_modes(rig.string, limit_Hz), step_s}, torsion{torsional_modes(rig, limit_Hz), step_s};
   transverse.follow(s.force, s.position);
   torsion.follow(s.force, s.position);
@@ -173,7 +175,8 @@ template <class Motion>
 [[nodiscard]] std::string problem_with_way(const Motion& motion, const modal_stroke& stroke, double sample_rate_Hz) {
   if (!travels(motion)) return {};
   for (double t = 0; t <= stroke.duration_s; t += 1 / sample_rate_Hz)
-    if (const double x = place_of(motion, t, 0); !(x > 0 && x < 1)) return "contact: it travels beyond an end of the string at " + std::to_string(t) + " s";
+    if (const double x = place_of(motion, t, 0); !(x > 0 && x < 1))
+      return "contact: it travels beyond an end of the string at " + std::to_string(t) + " s";
   return {};
 }
 
@@ -186,7 +189,8 @@ template <FrictionLaw Law, RodMotion Motion = steady_rod>
   for (const auto& problem : {problem_with(rig, detail::place_of(motion, 0, stroke.position)), problem_with(settings),
                               problem_with_duration(stroke.duration_s, settings)})
     if (!problem.empty()) return failure{problem};
-  if (const auto problem = detail::problem_with_way(motion, stroke, settings.sample_rate_Hz); !problem.empty()) return failure{problem};
+  if (const auto problem = detail::problem_with_way(motion, stroke, settings.sample_rate_Hz); !problem.empty())
+    return failure{problem};
   const double step_s = 1 / (settings.sample_rate_Hz * settings.oversampling);
   const double limit_Hz = std::min(settings.mode_limit_Hz, 0.49 / step_s);
   const modal_decimator decimate{settings.low_pass(), step_s, settings.oversampling};

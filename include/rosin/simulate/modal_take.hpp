@@ -43,8 +43,8 @@ struct modal_take {
   std::vector<double> temperature_rise_K{};    ///< of the contact, where the friction law has one
   std::size_t unconverged = 0;                 ///< steps whose contact equation was not solved to tolerance
   std::size_t slips = 0;                       ///< times the contact went from sticking to slipping
-  double slipping = 0;                         ///< share of the steps that slipped of the second half, or of that up to where the rod was lifted; 0 to 1
-  std::optional<stroke_energy> energy{};       ///< of strokes, where it was asked for
+  double slipping = 0;  ///< share of the steps that slipped of the second half, or of that up to where the rod was lifted; 0 to 1
+  std::optional<stroke_energy> energy{};  ///< of strokes, where it was asked for
 
   [[nodiscard]] std::size_t size() const noexcept { return force_near_N.size(); }
 };

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A damped oscillator over one step, exactly, under a force that is linear in it: with pole p = -s + i w_d and z = q' + i (...) as in
-// modal_bank.hpp,
+// A damped oscillator over one step, exactly, under a force that is linear in it: with pole p = -s + i w_d and z = q' + i (...)
+// as in modal_bank.hpp,
 //
 //     z(h) = e^{p h} z(0) + b (phi_a f(0) + phi_b f(h)) / mass,    b = 1 + i s / w_d.
 //
@@ -66,7 +66,9 @@ public:
     return {now.real(), from_velocity_ * now.real() + from_companion_ * now.imag()};
   }
   /// At rest at that displacement, under the force that holds it there.
-  void rest_at(double displacement, double force_N) noexcept { free_ = std::complex<double>{0, displacement / from_companion_} - response_.end * force_N; }
+  void rest_at(double displacement, double force_N) noexcept {
+    free_ = std::complex<double>{0, displacement / from_companion_} - response_.end * force_N;
+  }
 
 private:
   step_response response_{};

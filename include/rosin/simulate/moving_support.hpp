@@ -41,7 +41,7 @@ struct moving_support {
   int side = 0;  ///< 0 near, 1 far
   std::vector<moving_mode> modes{};
 
-  [[nodiscard]] double sum(double moving_mode::* what) const noexcept {
+  [[nodiscard]] double sum(double moving_mode::*what) const noexcept {
     double all = 0;
     for (const auto& m : modes) all += m.*what;
     return all;

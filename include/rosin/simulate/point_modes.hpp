@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Modes that are driven and looked at in one point only, stepped as in modal_bank.hpp: with the force linear over a step, exactly. Nothing but the
-// velocity of the point is asked for, so each mode is counted in that: u = sin(k x) z, and
+// Modes that are driven and looked at in one point only, stepped as in modal_bank.hpp: with the force linear over a step,
+// exactly. Nothing but the velocity of the point is asked for, so each mode is counted in that: u = sin(k x) z, and
 //
 //     u(h) = e^{p h} u(0) + sin^2(k x) b (phi_a f(0) + phi_b f(h)) / mass,     velocity = sum Re u
 //
@@ -62,7 +62,8 @@ private:
   using pack = Eigen::Array<double, static_cast<int>(width), 1>;
 
   struct lane {
-    pack re = pack::Zero(), im = pack::Zero(), turn_re = pack::Zero(), turn_im = pack::Zero(), push_re = pack::Zero(), push_im = pack::Zero();
+    pack re = pack::Zero(), im = pack::Zero(), turn_re = pack::Zero(), turn_im = pack::Zero(), push_re = pack::Zero(),
+         push_im = pack::Zero();
   };
 
   std::vector<lane> lanes_{};

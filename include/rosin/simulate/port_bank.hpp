@@ -6,8 +6,8 @@
 //
 //     T + (E A / 4) sum k_n^2 q_n^2,
 //
-// a force on every mode that is carried on to the end of the step from what the modes do at its beginning. What motion across this plane adds to the
-// tension may be given, step by step.
+// a force on every mode that is carried on to the end of the step from what the modes do at its beginning. What motion across
+// this plane adds to the tension may be given, step by step.
 //
 #pragma once
 
@@ -20,16 +20,20 @@ namespace rosin {
 class port_bank {
 public:
   /// `clamping`: of the ends (modal_string.hpp).
-  port_bank(const modal_rig& rig, double axial_stiffness_N, double limit_Hz, double step_s, const std::array<double, 2>& clamping = {})
+  port_bank(const modal_rig& rig, double axial_stiffness_N, double limit_Hz, double step_s,
+            const std::array<double, 2>& clamping = {})
       : length_{rig.string.length_m}, axial_{axial_stiffness_N}, step_{step_s} {
     modes_ = transverse_modes(rig.string, limit_Hz, clamping);
     transverse_ = static_cast<Eigen::Index>(modes_.size());
     const auto turning = torsional_modes(rig, limit_Hz);
     modes_.insert(modes_.end(), turning.begin(), turning.end());
     const auto n = static_cast<Eigen::Index>(modes_.size());
-    for (auto* a : {&mass, &omega, &number, &re_, &im_, &own_, &turn_re_, &turn_im_, &push_re_, &push_im_, &once_re_, &once_im_, &q_re_, &q_im_, &k_, &felt_, &now_re_, &now_im_, &drive_}) a->setZero(n);
+    for (auto* a : {&mass, &omega, &number, &re_, &im_, &own_, &turn_re_, &turn_im_, &push_re_, &push_im_, &once_re_, &once_im_,
+                    &q_re_, &q_im_, &k_, &felt_, &now_re_, &now_im_, &drive_})
+      a->setZero(n);
     end_.setZero(n, 2), end_damping_.setZero(n);
-    for (Eigen::Index i = 0; i < n; ++i) set_mode(i, modes_[static_cast<std::size_t>(i)], rig.damping == damping_convention::kelvin_voigt && i < transverse_);
+    for (Eigen::Index i = 0; i < n; ++i)
+      set_mode(i, modes_[static_cast<std::size_t>(i)], rig.damping == damping_convention::kelvin_voigt && i < transverse_);
   }
 
   Eigen::ArrayXd mass, omega, number;  ///< of every mode, transverse first
@@ -55,8 +59,10 @@ public:
     mobility = shape_.transpose() * once_re_.matrix().asDiagonal() * shape_;
     end_gain = end_.transpose() * (felt(once_re_, once_im_)).matrix().asDiagonal() * shape_;
     const Eigen::ArrayXd give = 1 / (mass * omega.square());
-    compliance = shape_.topRows(transverse_).transpose() * give.head(transverse_).matrix().asDiagonal() * shape_.topRows(transverse_);
-    twist_compliance = shape_.bottomRows(size() - transverse_).transpose() * give.tail(size() - transverse_).matrix().asDiagonal() * shape_.bottomRows(size() - transverse_);
+    compliance =
+        shape_.topRows(transverse_).transpose() * give.head(transverse_).matrix().asDiagonal() * shape_.topRows(transverse_);
+    twist_compliance = shape_.bottomRows(size() - transverse_).transpose() *
+                       give.tail(size() - transverse_).matrix().asDiagonal() * shape_.bottomRows(size() - transverse_);
     share = end_.transpose() * give.matrix().asDiagonal() * shape_;
   }
 
@@ -78,7 +84,9 @@ public:
   /// Of the twist alone under these forces.
   [[nodiscard]] double twist(Eigen::Index port, const Eigen::VectorXd& force) const {
     const auto turning = size() - transverse_;
-    return (shape_.col(port).tail(turning).array() * (re_.tail(turning) + once_re_.tail(turning) * (shape_.bottomRows(turning) * force).array())).sum();
+    return (shape_.col(port).tail(turning).array() *
+            (re_.tail(turning) + once_re_.tail(turning) * (shape_.bottomRows(turning) * force).array()))
+        .sum();
   }
   /// What this motion adds to the tension, N; and what else is to be added to it from the next step on (E A above 0 only).
   [[nodiscard]] double raised_N() const noexcept { return raised_; }
@@ -133,7 +141,9 @@ private:
     felt_[i] = q_re_[i] + end_damping_[i];
   }
   /// Displacement and its share of the stress, from velocity and its companion.
-  [[nodiscard]] Eigen::ArrayXd felt(const Eigen::ArrayXd& re, const Eigen::ArrayXd& im) const { return q_re_ * re + q_im_ * im + end_damping_ * re; }
+  [[nodiscard]] Eigen::ArrayXd felt(const Eigen::ArrayXd& re, const Eigen::ArrayXd& im) const {
+    return q_re_ * re + q_im_ * im + end_damping_ * re;
+  }
 
   void raise_tension(const Eigen::ArrayXd& re, const Eigen::ArrayXd& im) {
     const Eigen::ArrayXd q = q_re_ * re + q_im_ * im + step_ * re;  // at the end of the step to come
@@ -145,7 +155,8 @@ private:
   double length_, axial_, step_, raised_ = 0, across_ = 0;
   std::vector<string_mode> modes_;
   Eigen::Index transverse_ = 0;
-  Eigen::ArrayXd re_, im_, own_, turn_re_, turn_im_, push_re_, push_im_, once_re_, once_im_, q_re_, q_im_, k_, end_damping_, felt_, now_re_, now_im_, drive_;
+  Eigen::ArrayXd re_, im_, own_, turn_re_, turn_im_, push_re_, push_im_, once_re_, once_im_, q_re_, q_im_, k_, end_damping_,
+      felt_, now_re_, now_im_, drive_;
   Eigen::MatrixXd shape_, end_;
   Eigen::Vector2d pull_ = Eigen::Vector2d::Zero();
 };

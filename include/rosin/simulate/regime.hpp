@@ -32,10 +32,10 @@ inline constexpr std::array<std::string_view, 5> regime_names{"none", "helmholtz
 [[nodiscard]] inline std::string_view name_of(bowed_regime r) noexcept { return regime_names[static_cast<std::size_t>(r)]; }
 
 struct regime_settings {
-  double slip_share = 1;          ///< of the rod's speed: more is a slip (in Helmholtz motion it is 1 / beta)
-  double shortest_slip = 0.02;    ///< in periods; two slips nearer to each other than this are one
-  int periods = 12;               ///< at the end, that decide
-  double steady = 0.06;           ///< in periods: onsets may stray by this
+  double slip_share = 1;        ///< of the rod's speed: more is a slip (in Helmholtz motion it is 1 / beta)
+  double shortest_slip = 0.02;  ///< in periods; two slips nearer to each other than this are one
+  int periods = 12;             ///< at the end, that decide
+  double steady = 0.06;         ///< in periods: onsets may stray by this
 };
 
 struct regime_finding {
@@ -45,8 +45,8 @@ struct regime_finding {
 };
 
 /// Onsets of the slips, in samples. `slip` is surface less rod velocity, of the same length as the rod's.
-[[nodiscard]] inline std::vector<double> slip_onsets(std::span<const double> slip_m_s, std::span<const double> rod_m_s, double period_samples,
-                                                     const regime_settings& s = {}) {
+[[nodiscard]] inline std::vector<double> slip_onsets(std::span<const double> slip_m_s, std::span<const double> rod_m_s,
+                                                     double period_samples, const regime_settings& s = {}) {
   std::vector<double> onsets;
   const double gap = s.shortest_slip * period_samples;
   double left_off = -1e300;
@@ -67,12 +67,14 @@ struct regime_finding {
 namespace detail {
 
 /// Does slip i come `lag` slips after its like, `periods` periods later?
-[[nodiscard]] inline bool recurs(const std::vector<double>& onsets, std::size_t i, std::size_t lag, double periods, double period, double steady) {
+[[nodiscard]] inline bool recurs(const std::vector<double>& onsets, std::size_t i, std::size_t lag, double periods, double period,
+                                 double steady) {
   return i >= lag && std::abs((onsets[i] - onsets[i - lag]) / period - periods) < steady * std::max(1.0, periods);
 }
 
 /// Index of the first slip from which on all recur in this way; onsets.size() if the last does not.
-[[nodiscard]] inline std::size_t steady_from(const std::vector<double>& onsets, std::size_t lag, double periods, double period, double steady) {
+[[nodiscard]] inline std::size_t steady_from(const std::vector<double>& onsets, std::size_t lag, double periods, double period,
+                                             double steady) {
   std::size_t from = onsets.size();
   while (from > lag && recurs(onsets, from - 1, lag, periods, period, steady)) --from;
   return from;
@@ -81,12 +83,15 @@ namespace detail {
 }  // namespace detail
 
 /// `fundamental_Hz` is the string's own.
-[[nodiscard]] inline regime_finding classify(std::span<const double> slip_m_s, std::span<const double> rod_m_s, double sample_rate_Hz,
-                                             double fundamental_Hz, const regime_settings& s = {}) {
-  const double period = sample_rate_Hz / fundamental_Hz, length = static_cast<double>(slip_m_s.size()), tail = length - s.periods * period;
+[[nodiscard]] inline regime_finding classify(std::span<const double> slip_m_s, std::span<const double> rod_m_s,
+                                             double sample_rate_Hz, double fundamental_Hz, const regime_settings& s = {}) {
+  const double period = sample_rate_Hz / fundamental_Hz, length = static_cast<double>(slip_m_s.size()),
+               tail = length - s.periods * period;
   const auto onsets = slip_onsets(slip_m_s, rod_m_s, period, s);
   const auto late = onsets.end() - std::lower_bound(onsets.begin(), onsets.end(), tail);
-  regime_finding found{.regime = bowed_regime::none, .transient_periods = length / period, .slips_per_period = static_cast<double>(late) / s.periods};
+  regime_finding found{.regime = bowed_regime::none,
+                       .transient_periods = length / period,
+                       .slips_per_period = static_cast<double>(late) / s.periods};
   if (late == 0) {
     found.transient_periods = onsets.empty() ? 0 : onsets.back() / period;
     return found;
@@ -94,7 +99,8 @@ namespace detail {
   found.regime = bowed_regime::raucous;
   const auto settle = [&](bowed_regime regime, std::size_t lag, double periods) {
     const auto from = detail::steady_from(onsets, lag, periods, period, s.steady);
-    const bool lasts = from < onsets.size() && onsets[from - lag] <= tail + periods * period && length - onsets.back() < (periods + 0.5) * period;
+    const bool lasts = from < onsets.size() && onsets[from - lag] <= tail + periods * period &&
+                       length - onsets.back() < (periods + 0.5) * period;
     if (!lasts) return false;
     found.regime = regime;
     found.transient_periods = onsets[from - lag] / period;

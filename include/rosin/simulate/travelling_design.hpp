@@ -1,13 +1,13 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Kernels of a string whose contact travels (wave_way.hpp): with a_j the wave that arrives at end j, and m_j what a moving end makes of it
-// (wave_end.hpp),
+// Kernels of a string whose contact travels (wave_way.hpp): with a_j the wave that arrives at end j, and m_j what a moving end
+// makes of it (wave_end.hpp),
 //
 //     a_j = H_j f + R_i m_i  (i the other end),     v = local * f - G_1 m_1 - G_2 m_2.
 //
-// R_j, once along the whole string after end j has turned the wave over, are a loop with the poles of all partials (wave_loop.hpp), the same wherever the contact
-// is. All runs at the contact's rate.
+// R_j, once along the whole string after end j has turned the wave over, are a loop with the poles of all partials
+// (wave_loop.hpp), the same wherever the contact is. All runs at the contact's rate.
 //
 #pragma once
 
@@ -28,13 +28,16 @@ struct travelling_kernels {
   /// In another scalar.
   template <class U>
   explicit travelling_kernels(const travelling_kernels<U>& k)
-      : step_s{k.step_s}, way{wave_way<T>{k.way[0]}, wave_way<T>{k.way[1]}}, loop{wave_taps<T>{k.loop[0]}, wave_taps<T>{k.loop[1]}}, ends{k.ends}, local(k.local.begin(), k.local.end()) {}
+      : step_s{k.step_s}, way{wave_way<T>{k.way[0]}, wave_way<T>{k.way[1]}},
+        loop{wave_taps<T>{k.loop[0]}, wave_taps<T>{k.loop[1]}}, ends{k.ends}, local(k.local.begin(), k.local.end()) {}
 
   /// Steps until a force can be at either end, at the earliest.
   [[nodiscard]] std::ptrdiff_t ahead() const noexcept { return std::min(way[0].first(), way[1].first()); }
   /// Steps whose echoes are known before the first of them.
   [[nodiscard]] std::ptrdiff_t block() const noexcept { return 2 * ahead(); }
-  [[nodiscard]] std::ptrdiff_t loop_block() const noexcept { return std::max(std::min<std::ptrdiff_t>(std::min(loop[0].first, loop[1].first), 64) / block(), std::ptrdiff_t{1}) * block(); }
+  [[nodiscard]] std::ptrdiff_t loop_block() const noexcept {
+    return std::max(std::min<std::ptrdiff_t>(std::min(loop[0].first, loop[1].first), 64) / block(), std::ptrdiff_t{1}) * block();
+  }
 };
 
 struct travelling_design {
@@ -63,16 +66,20 @@ namespace detail {
     std::vector<double> to_end(static_cast<std::size_t>(k.way[j].last()) + 1, 0.0), back(to_end.size(), 0.0);
     k.way[j].to_end(distance).scatter(1, to_end.data());
     k.way[j].back(distance).spread(back.data());
-    h[j] = spectrum_of(transform, 0, to_end), g[j] = spectrum_of(transform, 0, back), r[j] = spectrum_of(transform, k.loop[j].first, k.loop[j].taps);
+    h[j] = spectrum_of(transform, 0, to_end), g[j] = spectrum_of(transform, 0, back),
+    r[j] = spectrum_of(transform, k.loop[j].first, k.loop[j].taps);
   }
   const auto local = spectrum_of(transform, 0, k.local);
   double largest = 0;
   std::array<complex, 2> before{};
   for (auto i = static_cast<std::size_t>(0.3 * static_cast<double>(grid) / period); i <= grid / 2; ++i) {
     const complex a = h[0][i] * g[0][i] / local[i], d = h[1][i] * g[1][i] / local[i];
-    const complex b = r[1][i] + h[0][i] * g[1][i] / local[i], c = r[0][i] + h[1][i] * g[0][i] / local[i], half = (a + d) / 2.0, root = std::sqrt((a - d) * (a - d) / 4.0 + b * c);
+    const complex b = r[1][i] + h[0][i] * g[1][i] / local[i], c = r[0][i] + h[1][i] * g[0][i] / local[i], half = (a + d) / 2.0,
+                  root = std::sqrt((a - d) * (a - d) / 4.0 + b * c);
     std::array<complex, 2> here{half + root, half - root};
-    if (std::abs(here[0] - before[0]) + std::abs(here[1] - before[1]) > std::abs(here[1] - before[0]) + std::abs(here[0] - before[1])) std::swap(here[0], here[1]);
+    if (std::abs(here[0] - before[0]) + std::abs(here[1] - before[1]) >
+        std::abs(here[1] - before[0]) + std::abs(here[0] - before[1]))
+      std::swap(here[0], here[1]);
     for (std::size_t j = 0; j < 2; ++j) largest = std::max(largest, gain_at_crossing(before[j], here[j]));
     before = here;
   }
@@ -82,7 +89,8 @@ namespace detail {
 }  // namespace detail
 
 /// Fails where the rig, the range, the settings or the ends make no sense, or the rate is too low for them.
-[[nodiscard]] inline outcome<travelling_design> design_travelling_wave(const modal_rig& rig, const contact_range& range, const wave_settings& settings = {},
+[[nodiscard]] inline outcome<travelling_design> design_travelling_wave(const modal_rig& rig, const contact_range& range,
+                                                                       const wave_settings& settings = {},
                                                                        const std::array<modal_termination, 2>& ends = {}) {
   const double rate_Hz = 1 / settings.step_s(), length_s = 1 / (2 * rig.string.fundamental_Hz);
   if (!(range.least <= range.most)) return failure{"contact: the least of its positions lies beyond the most"};
@@ -99,10 +107,20 @@ namespace detail {
   k.local = local_response(rig.string, k.step_s);
   detail::scale_to(k.local, wave_mobility(rig.string, 0));
   const double whole = rate_Hz * length_s, values = 4 * 4 * (range.most - range.least) * whole * whole;  // of the tables, or so
-  if (values > 1e8) return failure{"contact: its way is too long to be tabulated for this string and rate (" + std::to_string(static_cast<int>(values * 8e-9)) + " GB); shorten it or lower the rate"};
-  k.way = {wave_way<double>{rig.string, range.least, range.most, d.limits, rate_Hz}, wave_way<double>{rig.string, 1 - range.most, 1 - range.least, d.limits, rate_Hz}};
-  const echo_plan plan{{length_s, length_s}, rig.string.stiffness_s2(), d.limits, rate_Hz, 2 * k.ahead(), poles_of(transverse_modes(rig.string, d.limits.pass_Hz))};
-  const auto loop = design_loop(plan, [&](std::size_t) { return pinned_echo{{length_s, rig.string.stiffness_s2(), rig.string.loss}, rig.string.fundamental_Hz}; });
+  if (values > 1e8)
+    return failure{"contact: its way is too long to be tabulated for this string and rate (" +
+                   std::to_string(static_cast<int>(values * 8e-9)) + " GB); shorten it or lower the rate"};
+  k.way = {wave_way<double>{rig.string, range.least, range.most, d.limits, rate_Hz},
+           wave_way<double>{rig.string, 1 - range.most, 1 - range.least, d.limits, rate_Hz}};
+  const echo_plan plan{{length_s, length_s},
+                       rig.string.stiffness_s2(),
+                       d.limits,
+                       rate_Hz,
+                       2 * k.ahead(),
+                       poles_of(transverse_modes(rig.string, d.limits.pass_Hz))};
+  const auto loop = design_loop(plan, [&](std::size_t) {
+    return pinned_echo{{length_s, rig.string.stiffness_s2(), rig.string.loss}, rig.string.fundamental_Hz};
+  });
   if (!loop) return failure{loop.error()};
   for (std::size_t j = 0; j < 2; ++j) {
     if (const auto problem = problem_with(ends[j], rate_Hz); !problem.empty()) return failure{problem};
@@ -111,8 +129,11 @@ namespace detail {
   }
   for (const double position : {range.least, (range.least + range.most) / 2, range.most})
     if (const double gain = detail::largest_stuck_gain(k, position, 2 * whole); !(gain < 1))
-      return failure{"contact: where it sticks at " + std::to_string(position) + " of the length the string would not be stable (gain " + std::to_string(gain) + "); it may be at a higher rate of the steps, or a little further on"};
-  if (rig.torsion.present()) d.turn = detail::turn_modes(rig, d.limits, k.step_s), d.turn_stiffness_N_m = detail::turn_stiffness_N_m(rig);
+      return failure{"contact: where it sticks at " + std::to_string(position) +
+                     " of the length the string would not be stable (gain " + std::to_string(gain) +
+                     "); it may be at a higher rate of the steps, or a little further on"};
+  if (rig.torsion.present())
+    d.turn = detail::turn_modes(rig, d.limits, k.step_s), d.turn_stiffness_N_m = detail::turn_stiffness_N_m(rig);
   return d;
 }
 

@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// The travelling-wave string under a contact that travels, too: move_to() says where it is, line() how the surface would move in the coming
-// step, apply() takes the force. What the ends send is known a little ahead, for the time that waves take to the contact. Nothing is allocated
-// while it runs.
+// The travelling-wave string under a contact that travels, too: move_to() says where it is, line() how the surface would move in
+// the coming step, apply() takes the force. What the ends send is known a little ahead, for the time that waves take to the
+// contact. Nothing is allocated while it runs.
 //
 #pragma once
 
@@ -17,7 +17,8 @@ namespace rosin {
 class travelling_turn {
 public:
   travelling_turn(const travelling_design& d, double position)
-      : modes_{d.turn, damping_convention::viscous, {position}, d.kernels.step_s}, stiffness_N_m_{d.turn_stiffness_N_m}, step_s_{d.kernels.step_s}, present_{!d.turn.empty()} {
+      : modes_{d.turn, damping_convention::viscous, {position}, d.kernels.step_s},
+        stiffness_N_m_{d.turn_stiffness_N_m}, step_s_{d.kernels.step_s}, present_{!d.turn.empty()} {
     rest_before_ = rest_ = rest_at(position);
   }
 
@@ -38,7 +39,9 @@ public:
   }
 
 private:
-  [[nodiscard]] double rest_at(double x) const noexcept { return present_ ? (x * (1 - x) / stiffness_N_m_ - modes_.compliance(0)) / step_s_ : 0; }
+  [[nodiscard]] double rest_at(double x) const noexcept {
+    return present_ ? (x * (1 - x) / stiffness_N_m_ - modes_.compliance(0)) / step_s_ : 0;
+  }
 
   modal_bank<1> modes_;
   double stiffness_N_m_, step_s_, rest_ = 0, rest_before_ = 0, force_ = 0;
@@ -49,19 +52,15 @@ template <class T = double>
 class travelling_string {
 public:
   travelling_string(const travelling_design& d, double position)
-      : k_{d.kernels},
-        range_{d.range},
-        turn_{d, std::fmin(std::fmax(position, d.range.least), d.range.most)},
-        velocity_{0, k_.block() + static_cast<std::ptrdiff_t>(k_.local.size())},
-        arrived_{tape(), tape()},
-        sent_{tape(), tape()},
+      : k_{d.kernels}, range_{d.range}, turn_{d, std::fmin(std::fmax(position, d.range.least), d.range.most)},
+        velocity_{0, k_.block() + static_cast<std::ptrdiff_t>(k_.local.size())}, arrived_{tape(), tape()}, sent_{tape(), tape()},
         heard_{tape(), tape()} {
     begin_block();
     move_to(position);
   }
 
-  /// Where the contact is from the end of the last step on, distance from the near end / length: to be said before line(), in every step. Returns where it is:
-  /// it is held within the range of the design.
+  /// Where the contact is from the end of the last step on, distance from the near end / length: to be said before line(), in
+  /// every step. Returns where it is: it is held within the range of the design.
   double move_to(double position) noexcept {
     position = std::fmin(std::fmax(position, range_.least), range_.most);
     const std::array<double, 2> distance{position, 1 - position};
@@ -75,8 +74,8 @@ public:
   }
 
   [[nodiscard]] load_line<T> line(const rod_state& rod) const noexcept {
-    return {*velocity_.at(now_) + echo_ + static_cast<T>(turn_.free()), k_.local.front() + static_cast<T>(turn_.mobility()), static_cast<T>(rod.velocity_m_s),
-            static_cast<T>(rod.normal_force_N), static_cast<T>(k_.step_s)};
+    return {*velocity_.at(now_) + echo_ + static_cast<T>(turn_.free()), k_.local.front() + static_cast<T>(turn_.mobility()),
+            static_cast<T>(rod.velocity_m_s), static_cast<T>(rod.normal_force_N), static_cast<T>(k_.step_s)};
   }
 
   wave_state<T> apply(T force_N) noexcept {
@@ -90,7 +89,8 @@ public:
     return state;
   }
 
-  /// Waves that have arrived at end j up to now, as a rigid end would have to hear them to feel the force that the end feels: values n ... waves() - 1, one a step.
+  /// Waves that have arrived at end j up to now, as a rigid end would have to hear them to feel the force that the end feels:
+  /// values n ... waves() - 1, one a step.
   [[nodiscard]] std::ptrdiff_t waves() const noexcept { return met_; }
   [[nodiscard]] T wave(std::size_t j, std::ptrdiff_t n) const noexcept { return *heard_[j].at(n); }
   [[nodiscard]] std::ptrdiff_t block() const noexcept { return k_.block(); }
@@ -108,7 +108,8 @@ private:
     block_end_ = now_ + k_.block();
     velocity_.turn(now_, block_end_ + static_cast<std::ptrdiff_t>(k_.local.size()) + 1);
     for (std::size_t j = 0; j < 2; ++j)
-      for (auto* t : {&arrived_[j], &sent_[j], &heard_[j]}) t->turn(now_, now_ + std::max({k_.way[0].last(), k_.way[1].last(), k_.loop_block()}) + k_.block() + k_.ahead() + 1);
+      for (auto* t : {&arrived_[j], &sent_[j], &heard_[j]})
+        t->turn(now_, now_ + std::max({k_.way[0].last(), k_.way[1].last(), k_.loop_block()}) + k_.block() + k_.ahead() + 1);
     const auto known = now_ + k_.ahead();  // what comes later may still come from a force to come
     for (std::size_t j = 0; j < 2; ++j) meet(j, known);
     met_ = known;
@@ -133,7 +134,8 @@ private:
   void go_round() noexcept {
     loop_end_ = now_ + k_.loop_block();
     const auto end = loop_end_ + k_.ahead(), from = std::exchange(round_, end);
-    for (std::size_t j = 0; j < 2; ++j) detail::add_filtered(k_.loop[j], std::as_const(sent_[j]).at(from), arrived_[1 - j].at(from), end - from);
+    for (std::size_t j = 0; j < 2; ++j)
+      detail::add_filtered(k_.loop[j], std::as_const(sent_[j]).at(from), arrived_[1 - j].at(from), end - from);
   }
 
   travelling_kernels<T> k_;

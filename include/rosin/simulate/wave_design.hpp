@@ -29,7 +29,9 @@ struct wave_design {
 namespace detail {
 
 /// Round to `stride` fewer.
-[[nodiscard]] inline std::ptrdiff_t whole_strides(std::ptrdiff_t steps, std::ptrdiff_t stride) noexcept { return steps / stride * stride; }
+[[nodiscard]] inline std::ptrdiff_t whole_strides(std::ptrdiff_t steps, std::ptrdiff_t stride) noexcept {
+  return steps / stride * stride;
+}
 
 /// A Kaiser low-pass at the contact's rate that keeps `limits` and what the waves' rate folds onto it apart.
 [[nodiscard]] inline fir rate_filter(const band& limits, double wave_rate_Hz, double step_s) {
@@ -54,7 +56,8 @@ namespace detail {
     fir part;
     const int behind = (phase - kernel.first) / stride;  // first lag i with phase + i stride >= kernel.first
     part.first = -behind;
-    for (int at = phase - behind * stride; at <= kernel.last(); at += stride) part.taps.push_back(kernel.taps[static_cast<std::size_t>(at - kernel.first)]);
+    for (int at = phase - behind * stride; at <= kernel.last(); at += stride)
+      part.taps.push_back(kernel.taps[static_cast<std::size_t>(at - kernel.first)]);
     out.emplace_back(part);
   }
   return out;
@@ -74,7 +77,8 @@ inline void set_contact(wave_design& d, const string_parameters& string) {
   };
   const int stride = static_cast<int>(d.kernels.stride);
   const double from = std::min(d.limits.stop_Hz, 0.4 * rate);
-  const int reach = static_cast<int>(std::ceil(64e-6 * std::max(rate, 1e6)));  // what the stiffness spreads lasts as long at any rate
+  // what the stiffness spreads lasts as long at any rate
+  const int reach = static_cast<int>(std::ceil(64e-6 * std::max(rate, 1e6)));
   fir fill = shortest_fir(wave, {from, 0.5 * rate}, rate, -reach, reach, 1e-4);
   if (stride > 1) {
     const fir low = rate_filter(d.limits, d.wave_rate_Hz, step_s);
@@ -96,14 +100,16 @@ inline void set_direct(wave_design& d) {
   fir whole = convolved({static_cast<int>(fill.first), fill.taps}, echo, 1), direct{std::max(1, echo.first / 2), {}};
   direct.taps.assign(static_cast<std::size_t>(whole.last() - direct.first + 16) / 16 * 16, 0.0);  // whole registers
   for (int lag = whole.first; lag <= whole.last(); ++lag)
-    direct.taps[static_cast<std::size_t>(std::max(lag, direct.first) - direct.first)] += whole.taps[static_cast<std::size_t>(lag - whole.first)];
+    direct.taps[static_cast<std::size_t>(std::max(lag, direct.first) - direct.first)] +=
+        whole.taps[static_cast<std::size_t>(lag - whole.first)];
   d.kernels.direct = wave_taps<double>{direct};
 }
 
 [[nodiscard]] inline outcome<wave_loop> string_loop(const wave_design& d, const string_parameters& string) {
   const std::array<double, 2> delay{2 * d.end_delay_s[0], 2 * d.end_delay_s[1]};
   echo_plan plan{delay, string.stiffness_s2(), d.limits, d.wave_rate_Hz, 1, poles_of(transverse_modes(string, d.limits.pass_Hz))};
-  if (d.kernels.stride > 1) plan.earliest = d.kernels.fill_ahead() + (d.kernels.look_ahead() + d.kernels.stride) / d.kernels.stride;
+  if (d.kernels.stride > 1)
+    plan.earliest = d.kernels.fill_ahead() + (d.kernels.look_ahead() + d.kernels.stride) / d.kernels.stride;
   return design_loop(plan, [&](std::size_t j) {
     return pinned_echo{{delay[j], string.stiffness_s2(), string.loss}, string.fundamental_Hz};
   });
@@ -112,7 +118,8 @@ inline void set_direct(wave_design& d) {
 /// Torsional partials as far as a round of the string leaves anything of them.
 [[nodiscard]] inline std::vector<string_mode> turn_modes(const modal_rig& rig, const band& limits, double step_s) {
   const double first_Hz = rig.torsion.speed_ratio * rig.string.fundamental_Hz;
-  return torsional_modes(rig, std::max(std::min(0.4 / step_s, std::max(limits.pass_Hz, 1.5 * rig.torsion.quality * first_Hz)), first_Hz));
+  return torsional_modes(
+      rig, std::max(std::min(0.4 / step_s, std::max(limits.pass_Hz, 1.5 * rig.torsion.quality * first_Hz)), first_Hz));
 }
 /// Of the surface against both ends together.
 [[nodiscard]] inline double turn_stiffness_N_m(const modal_rig& rig) noexcept {
@@ -126,7 +133,8 @@ inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
 }
 
 /// The design at one stride; its block is 0 if there is no time for it.
-[[nodiscard]] inline outcome<wave_design> design_at_stride(const modal_rig& rig, double position, const wave_settings& s, std::ptrdiff_t stride) {
+[[nodiscard]] inline outcome<wave_design> design_at_stride(const modal_rig& rig, double position, const wave_settings& s,
+                                                           std::ptrdiff_t stride) {
   wave_design d;
   d.kernels.step_s = s.step_s();
   d.kernels.stride = stride;
@@ -161,10 +169,12 @@ inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
   if (const auto problem = problem_with_contact(rig, position, settings); !problem.empty()) return failure{problem};
   outcome<wave_design> best = failure{"the contact is too near an end for the rate of the steps"};
   for (const int stride : {8, 4, 2, 1}) {
-    const bool holds = settings.oversampling % stride == 0 && (stride == 1 || 2.8 * settings.band_Hz * settings.step_s() * stride <= 1);
+    const bool holds =
+        settings.oversampling % stride == 0 && (stride == 1 || 2.8 * settings.band_Hz * settings.step_s() * stride <= 1);
     if (!holds) continue;
     best = detail::design_at_stride(rig, position, settings, stride);
-    const bool whole = best && best->loop.largest_change < 2e-3;  // a kernel that had to begin too late would have to be bent to hold its poles
+    // a kernel that had to begin too late would have to be bent to hold its poles
+    const bool whole = best && best->loop.largest_change < 2e-3;
     if (whole && best->kernels.block >= (stride > 1 ? 8 : 1)) break;
   }
   if (!best) return best;

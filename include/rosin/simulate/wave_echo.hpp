@@ -42,8 +42,9 @@ struct pinned_echo {
   }
 };
 
-/// First and last lag of the response to a passage of between `least` and `most` samples: the fastest waves come early, the slowest in an Airy front, and what a
-/// constant Q loses spreads it to 1 / (1 + (t / w)^2), w = loss * most, cut off at `widths` of these; the low-pass rings a little around all.
+/// First and last lag of the response to a passage of between `least` and `most` samples: the fastest waves come early, the
+/// slowest in an Airy front, and what a constant Q loses spreads it to 1 / (1 + (t / w)^2), w = loss * most, cut off at `widths`
+/// of these; the low-pass rings a little around all.
 struct passage_span {
   double first, last;
   passage_span(double least, double most, double stiffness_s2, const band& limits, double rate_Hz, double loss, double widths) {
@@ -75,7 +76,8 @@ template <class Echo>
   set_poles(loop, plan.poles, 1 / plan.rate_Hz, plan.delay_s[far] * plan.rate_Hz);
   if (far == 0) std::swap(loop.echo[0], loop.echo[1]);
   const double gain = largest_gain(loop, period);
-  if (!(gain < 1)) return failure{"echo: the loop would not be stable (gain " + std::to_string(gain) + "); raise the rate of the steps"};
+  if (!(gain < 1))
+    return failure{"echo: the loop would not be stable (gain " + std::to_string(gain) + "); raise the rate of the steps"};
   return loop;
 }
 

@@ -5,9 +5,9 @@
 //
 //     x = 2 s / (1 + z),     back: x - s = s (1 - z) / (1 + z),     force on the end / force on a rigid one: x / (2 s),     z = Z Y,
 //
-// one step at a time. Each mode of z becomes a section of two poles by the bilinear transformation: what takes energy still does (a
-// positive real z stays so), and no loop gains by it. Its frequency, its height there and its compliance far below are exact: modes near
-// the rate's limit often stand for a spring. Stiffness is left out of Z here: K z of the wave, small where z is large.
+// one step at a time. Each mode of z becomes a section of two poles by the bilinear transformation: what takes energy still does
+// (a positive real z stays so), and no loop gains by it. Its frequency, its height there and its compliance far below are exact:
+// modes near the rate's limit often stand for a spring. Stiffness is left out of Z here: K z of the wave, small where z is large.
 //
 #pragma once
 
@@ -23,7 +23,8 @@ namespace rosin {
 /// The first thing about an end that cannot be simulated at this rate; empty if nothing.
 [[nodiscard]] inline std::string problem_with(const modal_termination& end, double rate_Hz) {
   for (const auto& m : end.modes) {
-    if (!(m.frequency_Hz > 0 && m.q > 0 && m.per_mass_per_s >= 0)) return "termination: frequency and Q must be above 0, and no mass negative";
+    if (!(m.frequency_Hz > 0 && m.q > 0 && m.per_mass_per_s >= 0))
+      return "termination: frequency and Q must be above 0, and no mass negative";
     if (!(m.frequency_Hz < 0.4 * rate_Hz)) return "termination: a mode lies above what the rate of the waves can hold";
   }
   return {};
@@ -34,9 +35,11 @@ public:
   wave_end() = default;  ///< rigid
   wave_end(const modal_termination& end, double rate_Hz) {
     for (const auto& m : end.modes) {
-      const double c = 2 * rate_Hz, straight = 2 * std::numbers::pi * m.frequency_Hz, w = c * std::tan(straight / c), bent = w / straight;
+      const double c = 2 * rate_Hz, straight = 2 * std::numbers::pi * m.frequency_Hz, w = c * std::tan(straight / c),
+                   bent = w / straight;
       const double resists = w * c * bent / m.q, norm = c * c + resists + w * w;
-      sections_.push_back({m.per_mass_per_s * bent * bent * c / norm, 2 * (w * w - c * c) / norm, (c * c - resists + w * w) / norm});
+      sections_.push_back(
+          {m.per_mass_per_s * bent * bent * c / norm, 2 * (w * w - c * c) / norm, (c * c - resists + w * w) / norm});
       at_once_ += sections_.back().b;
     }
   }

@@ -8,8 +8,8 @@
 //
 //     R1(z_n) R2(z_n) = 1  at z_n = exp(p_n h) for every partial's pole p_n,      R(1) = -1,
 //
-// by the change of its taps that is smallest in the least-squares sense, errors being weighed against each partial's loss. The loop
-// then has the pitch and the Q that are asked for, causally, and every partial at its place.
+// by the change of its taps that is smallest in the least-squares sense, errors being weighed against each partial's loss. The
+// loop then has the pitch and the Q that are asked for, causally, and every partial at its place.
 //
 #pragma once
 
@@ -41,8 +41,8 @@ struct wave_loop {
   double largest_change = 0;  ///< of a partial's loop gain by the correction, absolute
 };
 
-/// Makes a kernel `gain` with the delay (in samples) at 0 Hz: what of a response lies outside the taps is replaced by a straight line over
-/// them.
+/// Makes a kernel `gain` with the delay (in samples) at 0 Hz: what of a response lies outside the taps is replaced by a straight
+/// line over them.
 inline void hold_at_rest(fir& kernel, double gain, double delay) noexcept {
   const double count = static_cast<double>(kernel.taps.size()), middle = (kernel.first + kernel.last()) / 2.0;
   double sum = 0, moment = 0;
@@ -52,7 +52,8 @@ inline void hold_at_rest(fir& kernel, double gain, double delay) noexcept {
   }
   const double level = (gain - sum) / count;
   const double slope = count > 1 ? (gain * (delay - middle) - moment) / (count * (count * count - 1) / 12) : 0;
-  for (std::size_t k = 0; k < kernel.taps.size(); ++k) kernel.taps[k] += level + slope * (kernel.first + static_cast<double>(k) - middle);
+  for (std::size_t k = 0; k < kernel.taps.size(); ++k)
+    kernel.taps[k] += level + slope * (kernel.first + static_cast<double>(k) - middle);
 }
 
 /// Taps first ... last of an echo: -1 with the delay (in samples) at 0 Hz.
@@ -66,8 +67,8 @@ template <Transfer H>
 namespace detail {
 
 /// Rows of the least-squares problem: what each tap of `other`'s partner adds to the loop gain at a pole.
-inline void add_pole_rows(Eigen::MatrixXd& rows, Eigen::VectorXd& wanted, Eigen::Index n, const wave_loop& loop, std::complex<double> pole,
-                          double step_s) {
+inline void add_pole_rows(Eigen::MatrixXd& rows, Eigen::VectorXd& wanted, Eigen::Index n, const wave_loop& loop,
+                          std::complex<double> pole, double step_s) {
   const auto z = std::exp(pole * step_s), back = 1.0 / z;
   const fir& shaped = loop.echo[1];
   const auto through = response_at(loop.echo[0], z), error = 1.0 - through * response_at(shaped, z);
@@ -84,7 +85,8 @@ inline void add_pole_rows(Eigen::MatrixXd& rows, Eigen::VectorXd& wanted, Eigen:
 }  // namespace detail
 
 /// Sets the loop's poles; each is given for Im p > 0. echo[1] has to be the longer kernel; `delay` is its own, in samples.
-inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> poles, double step_s, double delay, double stiffness = 1e-3) {
+inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> poles, double step_s, double delay,
+                      double stiffness = 1e-3) {
   auto& taps = loop.echo[1].taps;
   const double shaped_first = loop.echo[1].first;
   const auto rows_wanted = static_cast<Eigen::Index>(2 * poles.size() + 2);
@@ -93,7 +95,8 @@ inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> pol
   for (std::size_t n = 0; n < poles.size(); ++n) {
     detail::add_pole_rows(rows, wanted, static_cast<Eigen::Index>(n), loop, poles[n], step_s);
     const auto z = std::exp(poles[n] * step_s);
-    loop.largest_change = std::max(loop.largest_change, std::abs(1.0 - response_at(loop.echo[0], z) * response_at(loop.echo[1], z)));
+    loop.largest_change =
+        std::max(loop.largest_change, std::abs(1.0 - response_at(loop.echo[0], z) * response_at(loop.echo[1], z)));
   }
   double moment = 0;
   for (Eigen::Index k = 0; k < rows.cols(); ++k) {  // R(1) stays -1, and the delay at 0 Hz what it is
@@ -104,7 +107,8 @@ inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> pol
   }
   wanted[rows_wanted - 2] = 0;
   wanted[rows_wanted - 1] = -1e5 * moment;
-  Eigen::MatrixXd between = rows * rows.transpose();  // the smallest change is a sum of rows: as many unknowns as conditions, not as taps
+  // the smallest change is a sum of rows: as many unknowns as conditions, not as taps
+  Eigen::MatrixXd between = rows * rows.transpose();
   double weight = 0;  // of a partial's error, on average
   for (const auto& p : poles) weight += std::abs(p) / (-p.real()) / static_cast<double>(poles.size());
   between.diagonal().array() += stiffness * stiffness * weight * weight * static_cast<double>(poles.size());
@@ -131,8 +135,10 @@ inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> pol
 
 namespace detail {
 
-/// Transform of a kernel up to half the rate (conjugate). Precondition: it begins at or after 0 and ends before the transform does.
-[[nodiscard]] inline std::vector<std::complex<double>> spectrum_of(const lane_fft<double, 1>& transform, std::ptrdiff_t first, std::span<const double> taps) {
+/// Transform of a kernel up to half the rate (conjugate). Precondition: it begins at or after 0 and ends before the transform
+/// does.
+[[nodiscard]] inline std::vector<std::complex<double>> spectrum_of(const lane_fft<double, 1>& transform, std::ptrdiff_t first,
+                                                                   std::span<const double> taps) {
   std::vector<double> data(2 * transform.size(), 0.0);
   for (std::size_t k = 0; k < taps.size(); ++k) data[2 * transform.position(static_cast<std::size_t>(first) + k)] = taps[k];
   transform.inverse(data.data());
@@ -149,13 +155,14 @@ namespace detail {
 
 }  // namespace detail
 
-/// Largest |R1 R2| where its phase passes 0, from 0.3 of the first partial's frequency on: elsewhere, and at 0 Hz, where the gain is 1,
-/// nothing can grow. `period` in samples; at 16 points and more for each lag.
+/// Largest |R1 R2| where its phase passes 0, from 0.3 of the first partial's frequency on: elsewhere, and at 0 Hz, where the gain
+/// is 1, nothing can grow. `period` in samples; at 16 points and more for each lag.
 [[nodiscard]] inline double largest_gain(const wave_loop& loop, double period) {
   std::size_t grid = 4096;
   while (grid < 32 * static_cast<std::size_t>(loop.echo[0].last() + loop.echo[1].last())) grid *= 2;
   const lane_fft<double, 1> transform(grid);
-  const auto one = detail::spectrum_of(transform, loop.echo[0].first, loop.echo[0].taps), other = detail::spectrum_of(transform, loop.echo[1].first, loop.echo[1].taps);
+  const auto one = detail::spectrum_of(transform, loop.echo[0].first, loop.echo[0].taps),
+             other = detail::spectrum_of(transform, loop.echo[1].first, loop.echo[1].taps);
   double largest = 0;
   for (auto i = static_cast<std::size_t>(0.3 * static_cast<double>(grid) / period) + 1; i <= grid / 2; ++i)
     largest = std::max(largest, detail::gain_at_crossing(one[i - 1] * other[i - 1], one[i] * other[i]));

@@ -1,8 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A pluck by a breaking wire on the travelling-wave string. All is linear, so what rings is the answer of a string at rest to the force that
-// is taken away, -F0 S(t), beside what the ends bear while the wire holds: with tau = T / L and the compliances C of ends that move
+// A pluck by a breaking wire on the travelling-wave string. All is linear, so what rings is the answer of a string at rest to the
+// force that is taken away, -F0 S(t), beside what the ends bear while the wire holds: with tau = T / L and the compliances C of
+// ends that move
 //
 //     F_near = F0 ((1 - x) + tau C_far) / (1 + tau (C_near + C_far)),      F_far = F0 - F_near.
 //
@@ -13,7 +14,8 @@
 
 namespace rosin {
 
-/// The force that the wire takes away, as a law that asks the string nothing. A release at once runs over the step around it, so that its time is exact.
+/// The force that the wire takes away, as a law that asks the string nothing. A release at once runs over the step around it, so
+/// that its time is exact.
 template <class T = double>
 struct breaking_wire {
   using scalar = T;
@@ -41,14 +43,18 @@ namespace detail {
 
 }  // namespace detail
 
-/// Simulates a pluck by waves, without torsion: the wire does not roll the string. The take has the form of simulate_pluck()'s. Fails where rig, pluck, settings or ends make no sense.
+/// Simulates a pluck by waves, without torsion: the wire does not roll the string. The take has the form of simulate_pluck()'s.
+/// Fails where rig, pluck, settings or ends make no sense.
 template <class T = double>
-[[nodiscard]] outcome<modal_take> simulate_wave_pluck(const modal_rig& rig, const modal_pluck& pluck, const wave_settings& settings = {},
+[[nodiscard]] outcome<modal_take> simulate_wave_pluck(const modal_rig& rig, const modal_pluck& pluck,
+                                                      const wave_settings& settings = {},
                                                       const std::array<modal_termination, 2>& ends = {}) {
-  if (!(pluck.release_s > 0 && pluck.release_duration_s >= 0 && std::isfinite(pluck.force_N))) return failure{"pluck: it is released after the take has begun, by a finite force, in no negative time"};
+  if (!(pluck.release_s > 0 && pluck.release_duration_s >= 0 && std::isfinite(pluck.force_N)))
+    return failure{"pluck: it is released after the take has begun, by a finite force, in no negative time"};
   auto still = rig;
   still.torsion = {};
-  auto take = simulate_wave_stroke<T>(still, breaking_wire<T>{pluck.force_N, pluck.release_s, pluck.release_duration_s}, steady_rod{0, 0}, {pluck.position, pluck.duration_s}, settings, ends);
+  auto take = simulate_wave_stroke<T>(still, breaking_wire<T>{pluck.force_N, pluck.release_s, pluck.release_duration_s},
+                                      steady_rod{0, 0}, {pluck.position, pluck.duration_s}, settings, ends);
   if (!take) return take;
   const double z = rig.string.impedance_Ns_m(), tilt = rig.string.tension_N / rig.string.length_m;
   const double near = tilt * detail::compliance_m_N(ends[0], z), far = tilt * detail::compliance_m_N(ends[1], z);

@@ -14,10 +14,10 @@
 namespace rosin {
 
 struct wave_settings {
-  double sample_rate_Hz = 128000;  ///< of what comes out
-  int oversampling = 8;            ///< steps of the contact per sample
-  double band_Hz = 90e3;           ///< waves up to here return from the ends
-  double pass_Hz = 0, stop_Hz = 0; ///< of the low-pass before the samples; 0: 0.43 and 0.5 of the sample rate
+  double sample_rate_Hz = 128000;   ///< of what comes out
+  int oversampling = 8;             ///< steps of the contact per sample
+  double band_Hz = 90e3;            ///< waves up to here return from the ends
+  double pass_Hz = 0, stop_Hz = 0;  ///< of the low-pass before the samples; 0: 0.43 and 0.5 of the sample rate
   double ripple = 1e-5;
 
   [[nodiscard]] double step_s() const noexcept { return 1 / (sample_rate_Hz * oversampling); }
@@ -43,7 +43,8 @@ struct wave_settings {
   if (!(4 * f0 < rate)) return "settings: the string's pitch is too high for the rate of the steps";
   const double bend = std::sqrt(rig.string.bending_stiffness_Nm2 / rig.string.tension_N);
   const double nearest = std::min(position, 1 - position) * rig.string.length_m;
-  if (nearest < 2 * bend) return "contact: so near an end that the string bends rather than swings there; 2 sqrt(B / T) is the least distance";
+  if (nearest < 2 * bend)
+    return "contact: so near an end that the string bends rather than swings there; 2 sqrt(B / T) is the least distance";
   const double transit = nearest / rig.string.wave_speed_m_s() * rate;
   if (transit < 3) return "contact: the nearer end is less than three steps away; raise the rate or move the contact";
   return {};

@@ -3,7 +3,8 @@
 //
 // The string in motion: line() says how its surface would move in the coming step under any force, apply() takes the
 // force that the law of friction found. Echoes need time, so all they do is computed for a block of steps at once,
-// as dense FIR sums (a far end's for longer blocks than a near one's); only the law and the near part of the string run step by step. Nothing is allocated while it runs.
+// as dense FIR sums (a far end's for longer blocks than a near one's); only the law and the near part of the string run step by
+// step. Nothing is allocated while it runs.
 //
 #pragma once
 
@@ -106,21 +107,19 @@ template <class T = double>
 class wave_string {
 public:
   explicit wave_string(wave_kernels<T> kernels)
-      : k_{std::move(kernels)},
-        wave_ahead_{k_.block / k_.stride + k_.far_block + k_.fill_ahead() + std::max(k_.echo[0].first, k_.echo[1].first) + 2},
-        force_{thin_reach(), k_.block},
-        velocity_{0, std::max(k_.block, k_.far_block) + static_cast<std::ptrdiff_t>(k_.local.size())},
-        echoes_{k_.fill_ahead() + fill_back() + 8, wave_ahead_},
-        out_{tape(k_.reach_back()), tape(k_.reach_back())},
-        heard_{tape(k_.reach_back()), tape(k_.reach_back())},
-        back_{tape(8), tape(8)} {
+      : k_{std::move(kernels)}, wave_ahead_{k_.block / k_.stride + k_.far_block + k_.fill_ahead() +
+                                            std::max(k_.echo[0].first, k_.echo[1].first) + 2},
+        force_{thin_reach(), k_.block}, velocity_{0, std::max(k_.block, k_.far_block) +
+                                                         static_cast<std::ptrdiff_t>(k_.local.size())},
+        echoes_{k_.fill_ahead() + fill_back() + 8, wave_ahead_}, out_{tape(k_.reach_back()), tape(k_.reach_back())},
+        heard_{tape(k_.reach_back()), tape(k_.reach_back())}, back_{tape(8), tape(8)} {
     begin_block();
   }
 
   /// The coming step as the law of friction sees it.
   [[nodiscard]] load_line<T> line(const rod_state& rod) const noexcept {
-    return {*velocity_.at(now_) + turn_velocity(), mobility_, static_cast<T>(rod.velocity_m_s), static_cast<T>(rod.normal_force_N),
-            static_cast<T>(k_.step_s)};
+    return {*velocity_.at(now_) + turn_velocity(), mobility_, static_cast<T>(rod.velocity_m_s),
+            static_cast<T>(rod.normal_force_N), static_cast<T>(k_.step_s)};
   }
 
   /// Ends the coming step with this force.
@@ -136,9 +135,12 @@ public:
     return state;
   }
 
-  /// Waves that have left for side j up to now, as a rigid end would have to hear them to feel the force that the end feels: values n ... waves() - 1 at the waves' rate; the last reach_back() are kept.
+  /// Waves that have left for side j up to now, as a rigid end would have to hear them to feel the force that the end feels:
+  /// values n ... waves() - 1 at the waves' rate; the last reach_back() are kept.
   [[nodiscard]] std::ptrdiff_t waves() const noexcept { return std::min(sent_[0], sent_[1]); }
-  [[nodiscard]] T wave(std::size_t j, std::ptrdiff_t n) const noexcept { return *(k_.ends[j].moves() ? heard_[j] : out_[j]).at(n); }
+  [[nodiscard]] T wave(std::size_t j, std::ptrdiff_t n) const noexcept {
+    return *(k_.ends[j].moves() ? heard_[j] : out_[j]).at(n);
+  }
   [[nodiscard]] const wave_kernels<T>& kernels() const noexcept { return k_; }
   [[nodiscard]] std::ptrdiff_t block() const noexcept { return k_.block; }
   [[nodiscard]] double step_s() const noexcept { return k_.step_s; }
@@ -146,7 +148,9 @@ public:
 private:
   using row = Eigen::Array<T, Eigen::Dynamic, 1>;
 
-  [[nodiscard]] std::ptrdiff_t thin_reach() const noexcept { return k_.block + k_.far_block + 2 * k_.stride + 8 + (k_.thin.empty() ? 0 : 2 * k_.thin.last()); }
+  [[nodiscard]] std::ptrdiff_t thin_reach() const noexcept {
+    return k_.block + k_.far_block + 2 * k_.stride + 8 + (k_.thin.empty() ? 0 : 2 * k_.thin.last());
+  }
   [[nodiscard]] std::ptrdiff_t fill_back() const noexcept {
     std::ptrdiff_t back = 0;
     for (const auto& phase : k_.fill) back = std::max(back, phase.last());
@@ -189,7 +193,6 @@ private:
     for (std::ptrdiff_t i = 0; i < end - from; ++i) to[i] = force[i] + back[i];
     if (k_.ends[j].moves()) meet(j, to, end - from, from);
   }
-
 
   void make_room() noexcept {
     const auto waves_end = block_end_ / k_.stride + 2 * wave_ahead_;
@@ -259,7 +262,8 @@ private:
     for (std::size_t phase = 0; phase < k_.fill.size(); ++phase) {
       std::fill_n(scratch_.begin(), count, T(0));
       detail::add_filtered(k_.fill[phase], std::as_const(echoes_).at(now_ / k_.stride), scratch_.data(), count);
-      for (std::ptrdiff_t i = 0; i < count; ++i) velocity[i * k_.stride + static_cast<std::ptrdiff_t>(phase)] += scratch_[static_cast<std::size_t>(i)];
+      for (std::ptrdiff_t i = 0; i < count; ++i)
+        velocity[i * k_.stride + static_cast<std::ptrdiff_t>(phase)] += scratch_[static_cast<std::size_t>(i)];
     }
   }
 

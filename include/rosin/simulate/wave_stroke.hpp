@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A stroke on the travelling-wave string: any law of friction, any motion of the rod, also along the string, and what the sensors at the ends
-// would record. The take has the same form, the same clock and the same low-pass as one of the modal reference
+// A stroke on the travelling-wave string: any law of friction, any motion of the rod, also along the string, and what the sensors
+// at the ends would record. The take has the same form, the same clock and the same low-pass as one of the modal reference
 // (modal_stroke.hpp), so the two can be set against each other sample by sample. The force on end j is
 //
 //     F_j = D_j s_j / G,       G = (1 + 2K) / (1 + K),
@@ -22,13 +22,16 @@ namespace rosin {
 struct wave_stroke {
   double position = 0.3;  ///< distance from the near end / length
   double duration_s = 0.36;
-  bool account = false;   ///< keep the books of energy, by the modes under the same force: what the waves lack or have too much is in the error
+  /// keep the books of energy, by the modes under the same force: what the waves lack or have too much is in the error
+  bool account = false;
 };
 
 namespace detail {
 
-/// From s_j to the samples of the force on end j, at the waves' rate: passage that takes delay_s, 1 / G, straight lines, low-pass.
-[[nodiscard]] inline fir end_kernel(double delay_s, const string_parameters& string, const band& limits, double wave_rate_Hz, double step_s, const modal_low_pass& low_pass) {
+/// From s_j to the samples of the force on end j, at the waves' rate: passage that takes delay_s, 1 / G, straight lines,
+/// low-pass.
+[[nodiscard]] inline fir end_kernel(double delay_s, const string_parameters& string, const band& limits, double wave_rate_Hz,
+                                    double step_s, const modal_low_pass& low_pass) {
   const transmission pass{delay_s, string.stiffness_s2(), string.loss};
   const auto wanted = [&](double f) {
     const double w = 2 * std::numbers::pi * f;
@@ -110,12 +113,14 @@ inline void sample_waves(modal_take& take, const stroke_steps& s, const modal_de
   return account_of(rig, s, limit_Hz, step_s);
 }
 
-[[nodiscard]] inline std::vector<double> end_force(const fir& kernel, const std::vector<double>& sent, std::size_t samples, std::ptrdiff_t stride) {
+[[nodiscard]] inline std::vector<double> end_force(const fir& kernel, const std::vector<double>& sent, std::size_t samples,
+                                                   std::ptrdiff_t stride) {
   std::vector<double> out(samples, 0.0);
   const auto size = static_cast<std::ptrdiff_t>(sent.size());
   for (std::size_t n = 0; n < samples; ++n) {
     const auto at = static_cast<std::ptrdiff_t>(n) * stride - kernel.first;  // newest wave that counts
-    const auto begin = std::max<std::ptrdiff_t>(0, at - size + 1), end = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(kernel.taps.size()), at + 1);
+    const auto begin = std::max<std::ptrdiff_t>(0, at - size + 1),
+               end = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(kernel.taps.size()), at + 1);
     double sum = 0;
     for (auto k = begin; k < end; ++k) sum += kernel.taps[static_cast<std::size_t>(k)] * sent[static_cast<std::size_t>(at - k)];
     out[n] = sum;
@@ -132,22 +137,26 @@ struct wave_outlet {
 
 /// A stroke on a string at rest.
 template <class String, class Law, class Motion>
-[[nodiscard]] outcome<modal_take> run_stroke(String& string, const wave_outlet& outlet, const modal_rig& rig, Law law, const Motion& motion, double start, double duration_s,
-                                             const wave_settings& settings, bool account) {
+[[nodiscard]] outcome<modal_take> run_stroke(String& string, const wave_outlet& outlet, const modal_rig& rig, Law law,
+                                             const Motion& motion, double start, double duration_s, const wave_settings& settings,
+                                             bool account) {
   if (const auto problem = problem_with_duration(duration_s, settings.as_modal()); !problem.empty()) return failure{problem};
   const modal_decimator decimate{settings.low_pass(), settings.step_s(), settings.oversampling};
   const auto stride = static_cast<std::size_t>(outlet.stride);
   const auto samples = static_cast<std::size_t>(std::lround(duration_s * settings.sample_rate_Hz));
   const auto ahead = static_cast<std::size_t>(std::max(0, -std::min(outlet.ends[0].first, outlet.ends[1].first))) * stride;
   const auto reach = decimate.reach();
-  const auto steps = (samples - 1) * static_cast<std::size_t>(settings.oversampling) + 1 + reach + std::max(reach, ahead + static_cast<std::size_t>(outlet.late));
+  const auto steps = (samples - 1) * static_cast<std::size_t>(settings.oversampling) + 1 + reach +
+                     std::max(reach, ahead + static_cast<std::size_t>(outlet.late));
   wave_record record{steps, steps / stride + 1};
   record.at_steps.position.assign(travels(motion) ? steps : 1, start);
   modal_take take{.sample_rate_Hz = settings.sample_rate_Hz};
   law.reset();
-  if (!run_waves(string, law, motion, record, take, reach)) return failure{"simulation: the string's velocity grew without bound"};
+  if (!run_waves(string, law, motion, record, take, reach))
+    return failure{"simulation: the string's velocity grew without bound"};
   sample_waves(take, record.at_steps, decimate);
-  for (auto* signal : {&take.contact_force_N, &take.centre_velocity_m_s, &take.torsion_velocity_m_s, &take.rod_velocity_m_s, &take.temperature_rise_K})
+  for (auto* signal : {&take.contact_force_N, &take.centre_velocity_m_s, &take.torsion_velocity_m_s, &take.rod_velocity_m_s,
+                       &take.temperature_rise_K})
     signal->resize(std::min(signal->size(), samples));
   take.force_near_N = end_force(outlet.ends[0], record.sent[0], samples, settings.oversampling / outlet.stride);
   take.force_far_N = end_force(outlet.ends[1], record.sent[1], samples, settings.oversampling / outlet.stride);
@@ -172,21 +181,26 @@ template <RodMotion Motion>
 
 /// Simulates a stroke on kernels that design_wave() has made for this rig, position and settings.
 template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
-[[nodiscard]] outcome<modal_take> simulate_wave_stroke(const wave_design& design, const modal_rig& rig, Law law, Motion motion, double duration_s,
-                                                       const wave_settings& settings, bool account = false) {
-  if (detail::travels(motion)) return failure{"contact: it travels, but the kernels are those of one place; design_travelling_wave() makes others"};
+[[nodiscard]] outcome<modal_take> simulate_wave_stroke(const wave_design& design, const modal_rig& rig, Law law, Motion motion,
+                                                       double duration_s, const wave_settings& settings, bool account = false) {
+  if (detail::travels(motion))
+    return failure{"contact: it travels, but the kernels are those of one place; design_travelling_wave() makes others"};
   const auto& k = design.kernels;
   const auto low_pass = settings.low_pass();
-  const auto end = [&](std::size_t j) { return detail::end_kernel(design.end_delay_s[j], rig.string, design.limits, design.wave_rate_Hz, k.step_s, low_pass); };
+  const auto end = [&](std::size_t j) {
+    return detail::end_kernel(design.end_delay_s[j], rig.string, design.limits, design.wave_rate_Hz, k.step_s, low_pass);
+  };
   wave_string<T> string{wave_kernels<T>{k}};
   const double position = design.end_delay_s[0] / (design.end_delay_s[0] + design.end_delay_s[1]);
-  return detail::run_stroke(string, {{end(0), end(1)}, k.stride, k.look_ahead() + 2 * k.block + k.far_block}, rig, law, motion, position, duration_s, settings, account);
+  return detail::run_stroke(string, {{end(0), end(1)}, k.stride, k.look_ahead() + 2 * k.block + k.far_block}, rig, law, motion,
+                            position, duration_s, settings, account);
 }
 
 /// The same for a rod that travels, on kernels that design_travelling_wave() has made; beyond their range it stays at its end.
 template <class T = double, FrictionLaw Law, TravellingRod Motion>
-[[nodiscard]] outcome<modal_take> simulate_wave_stroke(const travelling_design& design, const modal_rig& rig, Law law, Motion motion, double duration_s,
-                                                       const wave_settings& settings, bool account = false) {
+[[nodiscard]] outcome<modal_take> simulate_wave_stroke(const travelling_design& design, const modal_rig& rig, Law law,
+                                                       Motion motion, double duration_s, const wave_settings& settings,
+                                                       bool account = false) {
   if (!motion.travels()) return failure{"contact: it stays, but the kernels are those of a way; design_wave() makes others"};
   const auto& k = design.kernels;
   const fir end = detail::end_kernel(0, rig.string, design.limits, 1 / k.step_s, k.step_s, settings.low_pass());
@@ -198,7 +212,8 @@ template <class T = double, FrictionLaw Law, TravellingRod Motion>
 /// The same from a rig; fails where rig, stroke or settings make no sense.
 template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
 [[nodiscard]] outcome<modal_take> simulate_wave_stroke(const modal_rig& rig, Law law, Motion motion = {}, wave_stroke stroke = {},
-                                                       const wave_settings& settings = {}, const std::array<modal_termination, 2>& ends = {}) {
+                                                       const wave_settings& settings = {},
+                                                       const std::array<modal_termination, 2>& ends = {}) {
   for (const auto& problem : {problem_with(settings), problem_with_duration(stroke.duration_s, settings.as_modal())})
     if (!problem.empty()) return failure{problem};
   if constexpr (TravellingRod<Motion>)

@@ -1,12 +1,13 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// A contact that travels, for waves: the string itself stays, so its waves are counted at its ends, and the way between an end and the contact,
-// x long, is a kernel that changes from step to step,
+// A contact that travels, for waves: the string itself stays, so its waves are counted at its ends, and the way between an end
+// and the contact, x long, is a kernel that changes from step to step,
 //
 //     H = exp(-gamma x)  from a force to the end,      G = H E sinc^2  from the end to the velocity,   E = 1 / (2 Z_f)
 //
-// (wave_kernels.hpp). Both are tabulated over the way, finely enough that a straight line between two rows is right to 3e-3 at the band's edge and 1e-4 at a fifth of it.
+// (wave_kernels.hpp). Both are tabulated over the way, finely enough that a straight line between two rows is right to 3e-3 at
+// the band's edge and 1e-4 at a fifth of it.
 //
 #pragma once
 
@@ -36,7 +37,8 @@ struct way_taps {
 
   /// to[lag] += value * tap.
   void scatter(T value, T* to) const noexcept {
-    Eigen::Map<row>(to + first, size) += (value * (1 - weight)) * Eigen::Map<const row>(a, size) + (value * weight) * Eigen::Map<const row>(b, size);
+    Eigen::Map<row>(to + first, size) +=
+        (value * (1 - weight)) * Eigen::Map<const row>(a, size) + (value * weight) * Eigen::Map<const row>(b, size);
   }
   /// Sum of tap * from[-lag]; for rows in turned order.
   [[nodiscard]] T gather(const T* from) const noexcept {
@@ -60,9 +62,13 @@ public:
   wave_way() = default;
   /// For distances least ... most from the end, as shares of the length. Precondition: 0 < least <= most < 1.
   wave_way(const string_parameters& string, double least, double most, const band& limits, double rate_Hz)
-      : steps_{rate_Hz / (2 * string.fundamental_Hz)}, least_{least * steps_}, parts_{std::ceil(2 * std::numbers::pi * limits.pass_Hz / (0.15 * rate_Hz))} {
+      : steps_{rate_Hz / (2 * string.fundamental_Hz)}, least_{least * steps_}, parts_{std::ceil(2 * std::numbers::pi *
+                                                                                                limits.pass_Hz /
+                                                                                                (0.15 * rate_Hz))} {
     const double longest = most * steps_;
-    const passage_span span{least_, longest, string.stiffness_s2(), limits, rate_Hz, string.loss.inverse_q(string.fundamental_Hz) / 2, 800};  // less, and a held string may grow
+    const passage_span span{least_, longest, string.stiffness_s2(),
+                            limits, rate_Hz, string.loss.inverse_q(string.fundamental_Hz) / 2,
+                            800};  // less, and a held string may grow
     first_ = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(span.first));
     size_ = static_cast<std::ptrdiff_t>(std::ceil(std::max(span.last, longest + 0.2 * steps_))) - first_ + 1;
     rows_ = static_cast<std::ptrdiff_t>(std::ceil((longest - least_) * parts_)) + 2;
@@ -71,7 +77,8 @@ public:
   /// In another scalar.
   template <class U>
   explicit wave_way(const wave_way<U>& w)
-      : steps_{w.steps_}, least_{w.least_}, parts_{w.parts_}, first_{w.first_}, size_{w.size_}, rows_{w.rows_}, to_end_(w.to_end_.begin(), w.to_end_.end()), back_(w.back_.begin(), w.back_.end()) {}
+      : steps_{w.steps_}, least_{w.least_}, parts_{w.parts_}, first_{w.first_}, size_{w.size_}, rows_{w.rows_},
+        to_end_(w.to_end_.begin(), w.to_end_.end()), back_(w.back_.begin(), w.back_.end()) {}
 
   /// At a distance from the end, share of the length; beyond the way it is that of the way's end. Precondition: not empty.
   [[nodiscard]] way_taps<T> to_end(double distance) const noexcept { return at(to_end_, distance); }
@@ -100,7 +107,8 @@ private:
   }
 
   [[nodiscard]] way_taps<T> at(const std::vector<T>& table, double distance) const noexcept {
-    const double place = std::fmin(std::fmax((distance * steps_ - least_) * parts_, 0.0), static_cast<double>(rows_ - 2)), whole = std::floor(place);
+    const double place = std::fmin(std::fmax((distance * steps_ - least_) * parts_, 0.0), static_cast<double>(rows_ - 2)),
+                 whole = std::floor(place);
     const T* a = table.data() + static_cast<std::ptrdiff_t>(whole) * size_;
     return {a, a + size_, static_cast<T>(place - whole), first_, size_};
   }

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// One signal of a take, ready to be put through many transfer functions: transformed once, multiplied and transformed back for each.
-// Whatever is compared while the string sticks goes through smooth_window besides: a squared cosine over the whole band,
+// One signal of a take, ready to be put through many transfer functions: transformed once, multiplied and transformed back for
+// each. Whatever is compared while the string sticks goes through smooth_window besides: a squared cosine over the whole band,
 // whose kernel is confined to a few samples, whereas that of a flat band with steep edges rings from every slip far into the
 // sticking. Before the record the signal had its first value for ever; behind it, it returns gently to it in a padding.
 //
@@ -28,7 +28,9 @@ struct smooth_window {
     return c * c;
   }
   /// Samples to either side beyond which the kernel is below 1e-3 of what it integrates to.
-  [[nodiscard]] std::size_t reach(double rate_Hz) const noexcept { return static_cast<std::size_t>(std::ceil(1.75 * rate_Hz / edge_Hz)); }
+  [[nodiscard]] std::size_t reach(double rate_Hz) const noexcept {
+    return static_cast<std::size_t>(std::ceil(1.75 * rate_Hz / edge_Hz));
+  }
 };
 
 template <class Fft = eigen_fft<double>>
@@ -36,13 +38,15 @@ class contact_signal {
 public:
   /// `memory_s`: how long the longest transfer function rings. Preconditions: all samples are numbers, there is at least one.
   contact_signal(std::span<const double> samples, double rate_Hz, double memory_s = 0.03)
-      : samples_{samples.size()}, rate_Hz_{rate_Hz}, first_{samples.front()}, fft_(fast_size(samples.size() + padding(rate_Hz, memory_s))) {
+      : samples_{samples.size()}, rate_Hz_{rate_Hz}, first_{samples.front()},
+        fft_(fast_size(samples.size() + padding(rate_Hz, memory_s))) {
     const std::size_t pad = padding(rate_Hz, memory_s);
     buffer_.assign(fft_.size(), 0.0);
     for (std::size_t i = 0; i < samples_; ++i) buffer_[i] = samples[i] - first_;
     const double end = buffer_[samples_ - 1];
     for (std::size_t i = 0; i < pad / 2; ++i)
-      buffer_[samples_ + i] = 0.5 * end * (1 + std::cos(std::numbers::pi * static_cast<double>(i + 1) / static_cast<double>(pad / 2 + 1)));
+      buffer_[samples_ + i] =
+          0.5 * end * (1 + std::cos(std::numbers::pi * static_cast<double>(i + 1) / static_cast<double>(pad / 2 + 1)));
     bins_.resize(fft_.size() / 2 + 1);
     work_.resize(bins_.size());
     fft_.forward(buffer_.data(), bins_.data());
@@ -53,8 +57,8 @@ public:
   /// Transfer functions are asked at 0 and multiples of this.
   [[nodiscard]] double bin_Hz() const noexcept { return rate_Hz_ / static_cast<double>(fft_.size()); }
 
-  /// The signal through a transfer function of the frequency in Hz and the window; the transfer function is asked inside it only, all at
-  /// once if it can be (on_grid).
+  /// The signal through a transfer function of the frequency in Hz and the window; the transfer function is asked inside it only,
+  /// all at once if it can be (on_grid).
   template <class Transfer>
   [[nodiscard]] std::vector<double> through(const smooth_window& window, const Transfer& transfer) {
     const double step = bin_Hz();
@@ -64,7 +68,8 @@ public:
       const auto values = transfer.on_grid(step, used);
       for (std::size_t k = 0; k < used; ++k) work_[k] = windowed_[k] * values[k];
     } else {
-      for (std::size_t k = 0; k < used; ++k) work_[k] = windowed_[k] * std::complex<double>(transfer(static_cast<double>(k) * step));
+      for (std::size_t k = 0; k < used; ++k)
+        work_[k] = windowed_[k] * std::complex<double>(transfer(static_cast<double>(k) * step));
     }
     std::fill(work_.begin() + static_cast<std::ptrdiff_t>(used), work_.end(), 0.0);
     fft_.inverse(work_.data(), buffer_.data());

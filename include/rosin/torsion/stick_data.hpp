@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Bowed takes of one rig, reconstructed, seen while the string sticks. Everything that is linear in the force (torsion, a rod that
-// gives way, bristles that bend) becomes a column of samples; whatever else moves the surface is a column too. Of each
+// Bowed takes of one rig, reconstructed, seen while the string sticks. Everything that is linear in the force (torsion, a rod
+// that gives way, bristles that bend) becomes a column of samples; whatever else moves the surface is a column too. Of each
 // record its middle is used: the stroke's start, in which the rod gathers speed, is left out.
 //
 #pragma once
@@ -20,12 +20,12 @@ namespace rosin {
 struct stick_take {
   std::span<const double> force_N, velocity_m_s;  ///< at the contact; velocity of the string's centre
   double rate_Hz = 0;
-  double rod_speed_m_s = 0;                       ///< of the steady stroke, with its sign
-  std::array<double, 2> delay_s{};                ///< transverse travel times from the contact to the ends
-  double impedance_Ns_m = 0;                      ///< transverse
-  double velocity_sd_m_s = 0;                     ///< noise of the reconstruction
-  double edge_Hz = 0;                             ///< where the reconstruction's band ends; 0: 0.45 of the rate
-  double start_s = 0.03;                          ///< left out at the beginning, a quarter of the record at most
+  double rod_speed_m_s = 0;         ///< of the steady stroke, with its sign
+  std::array<double, 2> delay_s{};  ///< transverse travel times from the contact to the ends
+  double impedance_Ns_m = 0;        ///< transverse
+  double velocity_sd_m_s = 0;       ///< noise of the reconstruction
+  double edge_Hz = 0;               ///< where the reconstruction's band ends; 0: 0.45 of the rate
+  double start_s = 0.03;            ///< left out at the beginning, a quarter of the record at most
 };
 
 /// A take with its force transformed and its velocity smoothed and taken against the rod.
@@ -61,7 +61,8 @@ public:
     if (smooth_.empty()) smooth_ = force_through([](double) { return 1.0; });
     return smooth_;
   }
-  /// Two columns for what the contact yields besides: compliance_unit s f, and the same times (frequency / corner)^2. Kept once made.
+  /// Two columns for what the contact yields besides: compliance_unit s f, and the same times (frequency / corner)^2. Kept once
+  /// made.
   static constexpr double compliance_unit = 1e-6, compliance_corner_Hz = 5e4;
   [[nodiscard]] const std::vector<std::vector<double>>& compliance() {
     if (!compliance_.empty()) return compliance_;
@@ -70,10 +71,14 @@ public:
     compliance_.push_back(force_through([&](double f) { return first(f) * std::pow(f / compliance_corner_Hz, 2); }));
     return compliance_;
   }
-  [[nodiscard]] std::span<const double> known(std::span<const double> samples) const { return samples.subspan(begin_, last(take_) - begin_); }
+  [[nodiscard]] std::span<const double> known(std::span<const double> samples) const {
+    return samples.subspan(begin_, last(take_) - begin_);
+  }
 
 private:
-  [[nodiscard]] static bool is_known(const stick_take& t, std::size_t i) { return std::isfinite(t.force_N[i]) && std::isfinite(t.velocity_m_s[i]); }
+  [[nodiscard]] static bool is_known(const stick_take& t, std::size_t i) {
+    return std::isfinite(t.force_N[i]) && std::isfinite(t.velocity_m_s[i]);
+  }
   [[nodiscard]] static std::size_t first(const stick_take& t) {
     std::size_t i = 0;
     while (i + 1 < t.force_N.size() && !is_known(t, i)) ++i;
@@ -95,16 +100,20 @@ private:
 /// Samples of a record at which the string sticks if its surface moves as `relative_m_s` says; a window's reach inside.
 /// `seen_through`: the window that `relative_m_s` was smoothed by, if it is not the record's.
 [[nodiscard]] inline std::vector<char> sticking_samples(const stick_record& record, const std::vector<double>& relative_m_s,
-                                                        const phase_options& options = {}, std::optional<smooth_window> seen_through = {}) {
-  const auto phases = find_phases(std::span(relative_m_s).subspan(record.begin(), record.end() - record.begin()), record.take().rod_speed_m_s, options);
-  const auto inside = interior(phases.sticks, record.end() - record.begin(), seen_through.value_or(record.window()).reach(record.take().rate_Hz));
+                                                        const phase_options& options = {},
+                                                        std::optional<smooth_window> seen_through = {}) {
+  const auto phases = find_phases(std::span(relative_m_s).subspan(record.begin(), record.end() - record.begin()),
+                                  record.take().rod_speed_m_s, options);
+  const auto inside =
+      interior(phases.sticks, record.end() - record.begin(), seen_through.value_or(record.window()).reach(record.take().rate_Hz));
   std::vector<char> all(record.size(), 0);
   std::copy(inside.begin(), inside.end(), all.begin() + static_cast<std::ptrdiff_t>(record.begin()));
   return all;
 }
 
 /// Picks every other of the marked samples of columns of samples: the window leaves no more than that of information.
-[[nodiscard]] inline stick_rows pick(const std::vector<char>& marked, const std::vector<double>& target, const std::vector<std::vector<double>>& shared,
+[[nodiscard]] inline stick_rows pick(const std::vector<char>& marked, const std::vector<double>& target,
+                                     const std::vector<std::vector<double>>& shared,
                                      const std::vector<std::vector<double>>& own) {
   stick_rows rows;
   for (std::size_t i = 0; i < marked.size(); ++i)

@@ -1,8 +1,8 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Least squares for what should be steady while the string sticks, over several takes: coefficients that all takes share, and some
-// that each has of its own (its level). Residuals follow Student's t with 4 degrees of freedom: a slip that was taken for
+// Least squares for what should be steady while the string sticks, over several takes: coefficients that all takes share, and
+// some that each has of its own (its level). Residuals follow Student's t with 4 degrees of freedom: a slip that was taken for
 // sticking counts little. Iterated weights reach its maximum of likelihood.
 //
 // Neighbouring samples are not independent, the band limit and every model's error see to that. So rows are counted by the
@@ -28,12 +28,12 @@ struct stick_rows {
 };
 
 struct stick_solution {
-  Eigen::VectorXd shared;             ///< coefficients common to all takes
-  std::vector<Eigen::VectorXd> own;   ///< of each take
-  Eigen::MatrixXd covariance;         ///< of `shared`, by blocks
+  Eigen::VectorXd shared;            ///< coefficients common to all takes
+  std::vector<Eigen::VectorXd> own;  ///< of each take
+  Eigen::MatrixXd covariance;        ///< of `shared`, by blocks
   std::vector<Eigen::VectorXd> residual;
-  double scale = 0;                   ///< of Student's t; about the standard deviation of the bulk
-  double log_likelihood = 0;          ///< per effective row, summed over the effective rows
+  double scale = 0;           ///< of Student's t; about the standard deviation of the bulk
+  double log_likelihood = 0;  ///< per effective row, summed over the effective rows
   double rows = 0, effective = 0;
 };
 
@@ -55,15 +55,20 @@ inline constexpr double student_freedom = 4;
 [[nodiscard]] inline Eigen::VectorXd student_weights(const Eigen::VectorXd& residual, double scale) {
   return ((residual.array().square() / (scale * scale) + student_freedom).inverse() * (student_freedom + 1)).matrix();
 }
-[[nodiscard]] inline Eigen::VectorXd student_row_factors(const Eigen::VectorXd& residual, double scale) { return student_weights(residual, scale).cwiseSqrt(); }
+[[nodiscard]] inline Eigen::VectorXd student_row_factors(const Eigen::VectorXd& residual, double scale) {
+  return student_weights(residual, scale).cwiseSqrt();
+}
 
 /// Mean number of rows that one independent row is worth, from the autocorrelation over up to `lags` samples.
-[[nodiscard]] inline double rows_per_independent(const std::vector<stick_rows>& takes, const std::vector<Eigen::VectorXd>& residual,
-                                                 double scale, std::size_t lags = 32) {
+[[nodiscard]] inline double rows_per_independent(const std::vector<stick_rows>& takes,
+                                                 const std::vector<Eigen::VectorXd>& residual, double scale,
+                                                 std::size_t lags = 32) {
   std::vector<double> sum(lags + 1, 0.0), count(lags + 1, 0.0);
   for (std::size_t t = 0; t < takes.size(); ++t) {
     const auto& at = takes[t].sample;
-    const auto clipped = [&](std::size_t i) { return std::clamp(residual[t][static_cast<Eigen::Index>(i)], -3 * scale, 3 * scale); };
+    const auto clipped = [&](std::size_t i) {
+      return std::clamp(residual[t][static_cast<Eigen::Index>(i)], -3 * scale, 3 * scale);
+    };
     for (std::size_t i = 0; i < at.size(); ++i)
       for (std::size_t j = i; j < at.size() && at[j] - at[i] <= lags; ++j) {
         sum[at[j] - at[i]] += clipped(i) * clipped(j);
@@ -102,7 +107,8 @@ struct stacked {
 }
 
 /// Inverse Hessian times the scatter of blocks' gradients times inverse Hessian.
-[[nodiscard]] inline Eigen::MatrixXd sandwich(const stacked& s, const Eigen::VectorXd& weighted_residual, const Eigen::MatrixXd& inverse) {
+[[nodiscard]] inline Eigen::MatrixXd sandwich(const stacked& s, const Eigen::VectorXd& weighted_residual,
+                                              const Eigen::MatrixXd& inverse) {
   constexpr Eigen::Index blocks = 24;
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
   for (std::size_t t = 0; t + 1 < s.first.size(); ++t)
@@ -117,7 +123,8 @@ struct stacked {
 }  // namespace detail
 
 /// Preconditions: all takes have as many shared columns; rows in all exceed the columns. `floor`: least scale.
-[[nodiscard]] inline stick_solution stick_regression(const std::vector<stick_rows>& takes, double floor = 0, const stick_prior& prior = {}) {
+[[nodiscard]] inline stick_solution stick_regression(const std::vector<stick_rows>& takes, double floor = 0,
+                                                     const stick_prior& prior = {}) {
   const detail::stacked s = detail::stack(takes);
   const Eigen::Index shared = takes.front().shared.cols(), all = s.x.cols(), n = s.y.size();
   Eigen::VectorXd weight = Eigen::VectorXd::Ones(n), value = Eigen::VectorXd::Zero(all), residual = s.y;
@@ -148,8 +155,10 @@ struct stacked {
     out.own.push_back(value.segment(at, takes[t].own.cols()));
     out.residual.push_back(residual.segment(s.first[t], s.first[t + 1] - s.first[t]));
   }
-  const Eigen::ArrayXd ratio = residual.array().square() / (out.scale * out.scale), nu = Eigen::ArrayXd::Constant(n, detail::student_freedom);
-  const double slope = ((nu + 1) * (nu - ratio) / (nu + ratio).square()).sum() / weight.sum();  // of the influence, against the weights
+  const Eigen::ArrayXd ratio = residual.array().square() / (out.scale * out.scale),
+                       nu = Eigen::ArrayXd::Constant(n, detail::student_freedom);
+  const double slope =
+      ((nu + 1) * (nu - ratio) / (nu + ratio).square()).sum() / weight.sum();  // of the influence, against the weights
   const Eigen::MatrixXd inverse = hessian.ldlt().solve(Eigen::MatrixXd::Identity(all, all)) / std::max(0.2, slope);
   out.covariance = detail::sandwich(s, weight.cwiseProduct(residual), inverse).topLeftCorner(shared, shared);
   out.rows = static_cast<double>(n);

@@ -1,9 +1,9 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Torsion from what the transducers cannot see of it: while the string sticks, its surface moves with the rod, so that the centre's
-// velocity and the torsional velocity under the reconstructed force have to add up to a constant (Woodhouse, Schumacher &
-// Garoff (2000), section IV, who chose the three parameters by eye). Here they are fitted to several takes together:
+// Torsion from what the transducers cannot see of it: while the string sticks, its surface moves with the rod, so that the
+// centre's velocity and the torsional velocity under the reconstructed force have to add up to a constant (Woodhouse, Schumacher
+// & Garoff (2000), section IV, who chose the three parameters by eye). Here they are fitted to several takes together:
 //
 //     v_centre(t) + (h_T * f)(t) + (C1 d/dt + C3 d^3/dt^3) f(t) = level      wherever it sticks,
 //
@@ -28,7 +28,9 @@ namespace rosin {
 struct torsion_values {
   double speed_ratio = 0, impedance_ratio = 0, q = 0;
   [[nodiscard]] Eigen::Vector3d logs() const { return {std::log(speed_ratio), std::log(impedance_ratio), std::log(q)}; }
-  [[nodiscard]] static torsion_values from_logs(const Eigen::Vector3d& x) { return {std::exp(x[0]), std::exp(x[1]), std::exp(x[2])}; }
+  [[nodiscard]] static torsion_values from_logs(const Eigen::Vector3d& x) {
+    return {std::exp(x[0]), std::exp(x[1]), std::exp(x[2])};
+  }
 };
 
 /// How the loss is shared out between the resonances (torsion_modes.hpp).
@@ -42,8 +44,10 @@ struct torsion_at_contact {
   double rest_m_N = 0;  ///< compliance of the modes beyond those that are summed
 
   torsion_at_contact(const stick_take& take, const torsion_values& v, torsion_damping d)
-      : guide{torsion_of(take.delay_s, take.impedance_Ns_m, v.speed_ratio, v.impedance_ratio, v.q)},
-        modes{guide.delay_s, guide.impedance_Ns_m, guide.q, 40}, damping{d}, rest_m_N{d == torsion_damping::viscous_modes ? modes.rest_m_N() : 0.0} {}
+      : guide{torsion_of(take.delay_s, take.impedance_Ns_m, v.speed_ratio, v.impedance_ratio, v.q)}, modes{guide.delay_s,
+                                                                                                           guide.impedance_Ns_m,
+                                                                                                           guide.q, 40},
+        damping{d}, rest_m_N{d == torsion_damping::viscous_modes ? modes.rest_m_N() : 0.0} {}
   [[nodiscard]] std::complex<double> operator()(double f) const noexcept {
     if (damping == torsion_damping::constant_q) return guide(f);
     return modes(f) + std::complex<double>(0, 2 * std::numbers::pi * f * rest_m_N);
@@ -51,7 +55,8 @@ struct torsion_at_contact {
   [[nodiscard]] std::vector<std::complex<double>> on_grid(double step_Hz, std::size_t count) const {
     if (damping == torsion_damping::constant_q) return guide.on_grid(step_Hz, count);
     auto out = modes.on_grid(step_Hz, count);
-    for (std::size_t k = 0; k < count; ++k) out[k] += std::complex<double>(0, 2 * std::numbers::pi * step_Hz * static_cast<double>(k) * rest_m_N);
+    for (std::size_t k = 0; k < count; ++k)
+      out[k] += std::complex<double>(0, 2 * std::numbers::pi * step_Hz * static_cast<double>(k) * rest_m_N);
     return out;
   }
 };
@@ -60,11 +65,11 @@ struct torsion_fit_result {
   torsion_values value{}, sd{};
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the logarithms
   torsion_damping damping = torsion_damping::constant_q;
-  std::array<double, 2> rest{};       ///< C1 in m/N, C3 in m s^2/N
-  double gain = 0;                    ///< log-likelihood over that of a string that does not turn
-  double fluctuation = 0;             ///< of the surface while sticking, relative to the rod's speed
-  double sticking = 0;                ///< share of the samples that were used
-  std::vector<std::string> undecided{}; ///< what these takes cannot tell, and why
+  std::array<double, 2> rest{};          ///< C1 in m/N, C3 in m s^2/N
+  double gain = 0;                       ///< log-likelihood over that of a string that does not turn
+  double fluctuation = 0;                ///< of the surface while sticking, relative to the rod's speed
+  double sticking = 0;                   ///< share of the samples that were used
+  std::vector<std::string> undecided{};  ///< what these takes cannot tell, and why
 
   [[nodiscard]] bool decided() const noexcept { return undecided.empty(); }
 };
@@ -88,8 +93,9 @@ struct torsion_state {
 };
 
 /// Log-likelihood of a section of a record with Cauchy's density, slips and all, for a torsional shape whose size is free.
-[[nodiscard]] inline double cauchy_cost(const std::vector<double>& target, const std::vector<double>& shape, const std::vector<double>& slope,
-                                        std::size_t begin, std::size_t end, double speed, double& size) {
+[[nodiscard]] inline double cauchy_cost(const std::vector<double>& target, const std::vector<double>& shape,
+                                        const std::vector<double>& slope, std::size_t begin, std::size_t end, double speed,
+                                        double& size) {
   Eigen::Vector3d value(0, size, 0);
   double cost = 0;
   for (const double scale : {1.0, 0.5, 0.25, 0.12, 0.12, 0.12}) {
@@ -126,21 +132,25 @@ struct torsion_state {
 /// The likeliest starting points, best first.
 [[nodiscard]] inline std::vector<torsion_values> torsion_starts(const stick_record& whole, std::size_t wanted) {
   stick_record record(first_part(whole, 12000));
-  const std::size_t begin = static_cast<std::size_t>(std::lround(record.take().start_s * record.take().rate_Hz)), end = record.end();
+  const std::size_t begin = static_cast<std::size_t>(std::lround(record.take().start_s * record.take().rate_Hz)),
+                    end = record.end();
   const auto& slope = record.compliance()[0];
   std::vector<std::pair<double, torsion_values>> found;
   for (const double q : {13.0, 35.0})
     for (double speed = 4.2; speed < 11.5; speed *= 1.02) {
       const auto shape = record.force_through(torsion_at_contact(record.take(), {speed, 3.5, q}, torsion_damping::constant_q));
       double size = 1;
-      const double cost = cauchy_cost(record.relative_m_s(), shape, slope, begin, end, std::abs(record.take().rod_speed_m_s), size);
+      const double cost =
+          cauchy_cost(record.relative_m_s(), shape, slope, begin, end, std::abs(record.take().rod_speed_m_s), size);
       if (size > 0.05) found.push_back({cost, {speed, 3.5 / size, q}});
     }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<torsion_values> starts;
   for (const auto& candidate : found) {
     const torsion_values& v = candidate.second;
-    if (starts.size() < wanted && std::none_of(starts.begin(), starts.end(), [&](const auto& s) { return std::abs(std::log(s.speed_ratio / v.speed_ratio)) < 0.05; }))
+    if (starts.size() < wanted && std::none_of(starts.begin(), starts.end(), [&](const auto& s) {
+          return std::abs(std::log(s.speed_ratio / v.speed_ratio)) < 0.05;
+        }))
       starts.push_back(v);
   }
   return starts;
@@ -182,7 +192,8 @@ inline void torsion_step(std::vector<stick_record>& records, torsion_state& stat
   step = step.cwiseMax(Eigen::Vector3d(-0.03, -0.3, -0.5)).cwiseMin(Eigen::Vector3d(0.03, 0.3, 0.5));
   state.at = torsion_values::from_logs(here + step);
   const auto& v = state.at;
-  state.sane = v.speed_ratio > 1.5 && v.speed_ratio < 40 && v.impedance_ratio > 0.2 && v.impedance_ratio < 60 && v.q > 1.5 && v.q < 1000;
+  state.sane =
+      v.speed_ratio > 1.5 && v.speed_ratio < 40 && v.impedance_ratio > 0.2 && v.impedance_ratio < 60 && v.q > 1.5 && v.q < 1000;
 }
 
 [[nodiscard]] inline torsion_state settle(std::vector<stick_record>& records, torsion_state state, int steps) {
@@ -190,7 +201,8 @@ inline void torsion_step(std::vector<stick_record>& records, torsion_state& stat
   return state;
 }
 
-/// Likelihoods are comparable only if all agree on what sticks: mean log density per sample inside the phases of each, less what is lost.
+/// Likelihoods are comparable only if all agree on what sticks: mean log density per sample inside the phases of each, less what
+/// is lost.
 [[nodiscard]] inline double score(const torsion_state& s) {
   return s.sane ? s.solution.rows * std::log(1 / s.solution.scale) : -1e300;
 }
@@ -208,15 +220,19 @@ inline void torsion_step(std::vector<stick_record>& records, torsion_state& stat
 
 inline void judge_torsion(const torsion_state& best, const std::vector<stick_record>& records, torsion_fit_result& r) {
   double usable = 0, speed = 0;
-  for (const auto& record : records) usable += static_cast<double>(record.end() - record.begin()), speed += std::abs(record.take().rod_speed_m_s);
+  for (const auto& record : records)
+    usable += static_cast<double>(record.end() - record.begin()), speed += std::abs(record.take().rod_speed_m_s);
   r.sticking = best.solution.rows / std::max(1.0, usable);
   r.fluctuation = best.solution.scale * static_cast<double>(records.size()) / speed;
   r.covariance = best.solution.covariance.bottomRightCorner(3, 3);
   r.covariance.diagonal() += torsion_model_error.cwiseAbs2();
   const Eigen::Vector3d sd = r.covariance.diagonal().cwiseSqrt();
   r.sd = {r.value.speed_ratio * sd[0], r.value.impedance_ratio * sd[1], r.value.q * sd[2]};
-  if (r.sticking < 0.02) r.undecided.emplace_back("the string hardly sticks: " + std::to_string(static_cast<long>(best.solution.rows)) + " samples in all");
-  if (sd[0] > 0.05) r.undecided.emplace_back("speed ratio: the contact lies near a node, or the takes are too noisy or too short");
+  if (r.sticking < 0.02)
+    r.undecided.emplace_back("the string hardly sticks: " + std::to_string(static_cast<long>(best.solution.rows)) +
+                             " samples in all");
+  if (sd[0] > 0.05)
+    r.undecided.emplace_back("speed ratio: the contact lies near a node, or the takes are too noisy or too short");
   if (sd[1] > 0.25) r.undecided.emplace_back("impedance ratio: torsion hardly shows beside the noise");
   if (sd[2] > 0.5) r.undecided.emplace_back("q: the torsional resonance is not resolved");
   if (r.gain < 20) r.undecided.emplace_back("torsion: a string that does not turn explains the takes as well");
@@ -225,7 +241,8 @@ inline void judge_torsion(const torsion_state& best, const std::vector<stick_rec
 }  // namespace detail
 
 /// Fits torsion to all takes together. `start`: declared values, tried beside the grid. Fails where nothing sticks.
-[[nodiscard]] inline outcome<torsion_fit_result> fit_torsion(const std::vector<stick_take>& takes, std::optional<torsion_values> start = {}) {
+[[nodiscard]] inline outcome<torsion_fit_result> fit_torsion(const std::vector<stick_take>& takes,
+                                                             std::optional<torsion_values> start = {}) {
   auto records = detail::records_of(takes);
   if (records.empty()) return failure{"torsion: no bowed take with 500 known samples and a known speed of the rod"};
   auto starts = detail::torsion_starts(records.front(), 3);
@@ -243,12 +260,14 @@ inline void judge_torsion(const torsion_state& best, const std::vector<stick_rec
   if (detail::score(other) > detail::score(best)) best = other;
   if (!best.sane) return failure{"torsion: the fit ran away: no torsion makes the surface steady while it sticks"};
   torsion_fit_result result{.value = best.at, .damping = best.damping};
-  result.rest = {best.rest[0] * stick_record::compliance_unit,
-                 -best.rest[1] * stick_record::compliance_unit / std::pow(2 * std::numbers::pi * stick_record::compliance_corner_Hz, 2)};
+  result.rest = {
+      best.rest[0] * stick_record::compliance_unit,
+      -best.rest[1] * stick_record::compliance_unit / std::pow(2 * std::numbers::pi * stick_record::compliance_corner_Hz, 2)};
   detail::torsion_state rigid = best;
   rigid.at.impedance_ratio = 1e9;
   detail::torsion_step(records, rigid, false);
-  result.gain = rigid.sane ? best.solution.effective * std::log(rigid.solution.scale / best.solution.scale) : best.solution.effective;
+  result.gain =
+      rigid.sane ? best.solution.effective * std::log(rigid.solution.scale / best.solution.scale) : best.solution.effective;
   detail::judge_torsion(best, records, result);
   return result;
 }

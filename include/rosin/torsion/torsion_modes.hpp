@@ -44,7 +44,8 @@ struct torsion_modes {
     const double step = 2 * std::numbers::pi * step_Hz, tau = delay_s[0] + delay_s[1], first = std::numbers::pi / tau;
     std::vector<double> real(count, 0.0), imag(count, 0.0);
     for (int n = 1; n <= modes; ++n) {
-      const double wn = n * first, wn2 = wn * wn, lossy = wn / q, moved = 1 - std::cos(2 * n * std::numbers::pi * delay_s[0] / tau);
+      const double wn = n * first, wn2 = wn * wn, lossy = wn / q,
+                   moved = 1 - std::cos(2 * n * std::numbers::pi * delay_s[0] / tau);
       for (std::size_t k = 0; k < count; ++k) {
         const double w = step * static_cast<double>(k), re = wn2 - w * w, im = w * lossy, scale = moved / (re * re + im * im);
         real[k] += re * scale, imag[k] -= im * scale;

@@ -27,11 +27,13 @@ public:
 
   /// `delay_s`: torsional, from a to the near end, between both, from b to the far end.
   torsion_pair(const std::array<double, 3>& delay_s, double impedance_Ns_m, double q, torsion_damping damping)
-      : a_{delay_s[0]}, b_{delay_s[0] + delay_s[1]}, all_{delay_s[0] + delay_s[1] + delay_s[2]}, impedance_{impedance_Ns_m}, q_{q}, damping_{damping} {
+      : a_{delay_s[0]}, b_{delay_s[0] + delay_s[1]}, all_{delay_s[0] + delay_s[1] + delay_s[2]},
+        impedance_{impedance_Ns_m}, q_{q}, damping_{damping} {
     if (damping == torsion_damping::constant_q) return;
     rest_ = {static_compliance(a_, a_), static_compliance(b_, b_), static_compliance(a_, b_)};
     for (std::size_t n = 0; n < modes; ++n) {
-      const double turn = static_cast<double>(n + 1) * std::numbers::pi / all_, at_a = std::sin(turn * a_), at_b = std::sin(turn * b_), weight = 2 / (impedance_ * all_);
+      const double turn = static_cast<double>(n + 1) * std::numbers::pi / all_, at_a = std::sin(turn * a_),
+                   at_b = std::sin(turn * b_), weight = 2 / (impedance_ * all_);
       modes_[n] = {turn, weight * at_a * at_a, weight * at_b * at_b, weight * at_a * at_b};
       for (std::size_t k = 0; k < 3; ++k) rest_[k] -= modes_[n][k + 1] / (turn * turn);
     }
@@ -41,7 +43,8 @@ public:
     const double w = 2 * std::numbers::pi * frequency_Hz;
     if (w == 0) return {};
     if (damping_ == torsion_damping::constant_q) {
-      const complex g(0.5 * w / q_, w), scale = 1.0 / (impedance_ * std::sinh(g * all_)), a = std::sinh(g * a_), b = std::sinh(g * (all_ - b_));
+      const complex g(0.5 * w / q_, w), scale = 1.0 / (impedance_ * std::sinh(g * all_)), a = std::sinh(g * a_),
+                                        b = std::sinh(g * (all_ - b_));
       return {a * std::sinh(g * (all_ - a_)) * scale, b * std::sinh(g * b_) * scale, a * b * scale};
     }
     const complex turn(0, w);
@@ -56,7 +59,9 @@ public:
 private:
   static constexpr std::size_t modes = 40;
 
-  [[nodiscard]] double static_compliance(double x, double y) const noexcept { return std::min(x, y) * (all_ - std::max(x, y)) / (all_ * impedance_); }
+  [[nodiscard]] double static_compliance(double x, double y) const noexcept {
+    return std::min(x, y) * (all_ - std::max(x, y)) / (all_ * impedance_);
+  }
 
   double a_, b_, all_, impedance_, q_;
   torsion_damping damping_;

@@ -7,9 +7,9 @@
 //     v_T / f = (1 / (2 Z_T)) 2 sinh(g_1) sinh(g_2) / sinh(g_1 + g_2),    g_j = i w tau_j + |w| tau_j / (2 Q)
 //
 // (Woodhouse, Schumacher & Garoff (2000), section IV). Written with decaying exponentials
-// only, (1 - e^{-2 g_1})(1 - e^{-2 g_2}) / (1 - e^{-2 (g_1 + g_2)}), it neither overflows nor cancels at high frequency. It is one
-// transfer function, applied to the whole record at once: Q is as low as 15, so that all memory ends within a few dozen of the
-// torsional periods, and zeros behind the record keep its end out of its beginning.
+// only, (1 - e^{-2 g_1})(1 - e^{-2 g_2}) / (1 - e^{-2 (g_1 + g_2)}), it neither overflows nor cancels at high frequency. It is
+// one transfer function, applied to the whole record at once: Q is as low as 15, so that all memory ends within a few dozen of
+// the torsional periods, and zeros behind the record keep its end out of its beginning.
 //
 #pragma once
 
@@ -47,7 +47,8 @@ struct torsion_waveguide {
     constexpr std::size_t anew = 256;
     const double w = 2 * std::numbers::pi * step_Hz;
     std::array<std::complex<double>, 2> rate, turn, at;
-    for (std::size_t j = 0; j < 2; ++j) rate[j] = -2 * w * delay_s[j] * std::complex<double>(1 / (2 * q), 1), turn[j] = std::exp(rate[j]);
+    for (std::size_t j = 0; j < 2; ++j)
+      rate[j] = -2 * w * delay_s[j] * std::complex<double>(1 / (2 * q), 1), turn[j] = std::exp(rate[j]);
     std::vector<std::complex<double>> out(count);
     for (std::size_t k = 0; k < count; ++k) {
       for (std::size_t j = 0; j < 2; ++j) at[j] = k % anew == 0 ? std::exp(rate[j] * static_cast<double>(k)) : at[j] * turn[j];
@@ -70,7 +71,8 @@ struct torsion_waveguide {
 
 /// Surface velocity by rotation for a force of finite samples. Before the record the force had its first value for ever.
 template <class Fft = eigen_fft<double>>
-[[nodiscard]] std::vector<double> torsion_velocity(const torsion_waveguide& waveguide, std::span<const double> force_N, double rate_Hz) {
+[[nodiscard]] std::vector<double> torsion_velocity(const torsion_waveguide& waveguide, std::span<const double> force_N,
+                                                   double rate_Hz) {
   if (force_N.empty()) return {};
   const auto memory = static_cast<std::size_t>(std::ceil(2 * waveguide.memory_s(1e-4) * rate_Hz));
   const std::size_t size = fast_size(force_N.size() + memory + 2);
@@ -78,7 +80,8 @@ template <class Fft = eigen_fft<double>>
   for (std::size_t i = 0; i < force_N.size(); ++i) padded[i] = force_N[i] - force_N.front();
   const double end = padded[force_N.size() - 1];  // a gentle way back to zero, which itself rings in the padding only
   for (std::size_t i = 0; i < memory / 2; ++i)
-    padded[force_N.size() + i] = 0.5 * end * (1 + std::cos(std::numbers::pi * static_cast<double>(i + 1) / static_cast<double>(memory / 2 + 1)));
+    padded[force_N.size() + i] =
+        0.5 * end * (1 + std::cos(std::numbers::pi * static_cast<double>(i + 1) / static_cast<double>(memory / 2 + 1)));
   Fft fft(size);
   std::vector<std::complex<double>> bins(size / 2 + 1);
   fft.forward(padded.data(), bins.data());

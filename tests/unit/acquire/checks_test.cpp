@@ -94,7 +94,8 @@ TEST_CASE("an octave at one end is a doubt, at both another string") {
   auto x = test::pluck_forces(p);
   const auto ringing = static_cast<std::size_t>(p.release_s * p.rate_Hz) + 4 * half;
   for (const bool both : {false, true}) {
-    for (std::size_t i = ringing; i + half < x[0].size(); ++i) x[both ? 0 : 1][i] = 0.5 * (x[both ? 0 : 1][i] + x[both ? 0 : 1][i + half]);  // odd partials go
+    for (std::size_t i = ringing; i + half < x[0].size(); ++i)
+      x[both ? 0 : 1][i] = 0.5 * (x[both ? 0 : 1][i] + x[both ? 0 : 1][i + half]);  // odd partials go
     const auto c = rosin::check_take(r, r.takes[0], test::signals(r, p, x));
     CHECK(c.found("wrong-pitch"));
     CHECK(rosin::has_error(c.findings) == both);
@@ -129,7 +130,8 @@ TEST_CASE("hum and an offset under a pluck") {
   test::pluck p;
   const auto r = test::two_force_rig(p);
   auto x = test::pluck_forces(p);
-  for (std::size_t i = 0; i < x[0].size(); ++i) x[0][i] += 0.02 * std::sin(6.283185307179586 * 50 * static_cast<double>(i) / p.rate_Hz);
+  for (std::size_t i = 0; i < x[0].size(); ++i)
+    x[0][i] += 0.02 * std::sin(6.283185307179586 * 50 * static_cast<double>(i) / p.rate_Hz);
   const auto hum = rosin::check_take(r, r.takes[0], test::signals(r, p, x));
   CHECK(kinds(hum) == "hum(near:warning) ");
   CHECK(hum.channels[0].hum->amplitude == doctest::Approx(0.02).epsilon(0.03));

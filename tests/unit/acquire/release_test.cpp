@@ -17,7 +17,8 @@ TEST_CASE("the release arrives as a step of the breaking force, at each end in i
     REQUIRE(far);
     CHECK(near->height == doctest::Approx(-1).epsilon(0.12));
     CHECK(far->height == doctest::Approx(-1).epsilon(0.12));
-    const double near_s = p.release_s + position / (2 * p.fundamental_Hz), far_s = p.release_s + (1 - position) / (2 * p.fundamental_Hz);
+    const double near_s = p.release_s + position / (2 * p.fundamental_Hz),
+                 far_s = p.release_s + (1 - position) / (2 * p.fundamental_Hz);
     CHECK(std::abs(static_cast<double>(near->frame) / p.rate_Hz - near_s) < 0.02 / p.fundamental_Hz);
     CHECK(std::abs(static_cast<double>(far->frame) / p.rate_Hz - far_s) < 0.02 / p.fundamental_Hz);
   }

@@ -73,8 +73,8 @@ TEST_CASE("full scale: -1 is reached, +1 is one step less; beyond it PCM clips")
 TEST_CASE("files of other programs: FLAC, AIFF, 8 bit; codes as fractions of full scale") {
   const test::temporary_folder folder;
   const std::vector<short> codes{-32768, 0, 16384, 32767, 1, -1};
-  for (const int format : {SF_FORMAT_FLAC | SF_FORMAT_PCM_16, SF_FORMAT_AIFF | SF_FORMAT_PCM_16, SF_FORMAT_RF64 | SF_FORMAT_PCM_16,
-                           SF_FORMAT_CAF | SF_FORMAT_PCM_16}) {
+  for (const int format : {SF_FORMAT_FLAC | SF_FORMAT_PCM_16, SF_FORMAT_AIFF | SF_FORMAT_PCM_16,
+                           SF_FORMAT_RF64 | SF_FORMAT_PCM_16, SF_FORMAT_CAF | SF_FORMAT_PCM_16}) {
     CAPTURE(format);
     write_as(folder / "a", format, codes, 2);
     const auto r = rosin::read_audio(folder / "a");

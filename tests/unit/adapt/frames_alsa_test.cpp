@@ -15,9 +15,12 @@ void silent(const char*, int, const char*, int, const char*, ...) {}
 struct alsa_world {
   explicit alsa_world(std::string_view samples) {
     folder.write("samples", samples);
-    folder.write("asound.conf", "pcm.null { type null }\nctl.null { type null }\n"
-                                "pcm.take { type file slave.pcm { type null } file \"/dev/null\" infile \"" + folder / "samples" + "\" format \"raw\" }\n"
-                                "pcm.fixed { type hw card 77 }\n");
+    folder.write("asound.conf",
+                 "pcm.null { type null }\nctl.null { type null }\n"
+                 "pcm.take { type file slave.pcm { type null } file \"/dev/null\" infile \"" +
+                     folder / "samples" +
+                     "\" format \"raw\" }\n"
+                     "pcm.fixed { type hw card 77 }\n");
     ::setenv("ALSA_CONFIG_PATH", (folder / "asound.conf").c_str(), 1);
     snd_lib_error_set_handler(&silent);
   }

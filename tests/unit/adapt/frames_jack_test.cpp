@@ -3,11 +3,11 @@
 
 #include <doctest/doctest.h>
 
-#include <csignal>
-#include <cstdlib>
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <csignal>
+#include <cstdlib>
 
 namespace {
 
@@ -85,7 +85,8 @@ TEST_CASE("from another client of a real server with its dummy driver: every fra
   REQUIRE(client);
   plays.client = client.get();
   jack_set_process_callback(client.get(), &player::process, &plays);
-  for (std::size_t c = 0; c < 2; ++c) plays.ports[c] = jack_port_register(client.get(), c == 0 ? "near" : "far", JACK_DEFAULT_AUDIO_TYPE, JackPortIsOutput, 0);
+  for (std::size_t c = 0; c < 2; ++c)
+    plays.ports[c] = jack_port_register(client.get(), c == 0 ? "near" : "far", JACK_DEFAULT_AUDIO_TYPE, JackPortIsOutput, 0);
   REQUIRE(jack_activate(client.get()) == 0);
   auto from = rosin::jack_source::open("rosin", {"player:near", "player:far"}, server.name());
   REQUIRE_MESSAGE(from.has_value(), from.error());
@@ -99,7 +100,7 @@ TEST_CASE("from another client of a real server with its dummy driver: every fra
     const auto got = from->read(block, std::chrono::seconds{2});
     REQUIRE(got.frames > 0);
     for (std::size_t i = 0; i < got.frames; ++i) {
-      if (block[2 * i] == 0 && next == 1) continue;  // before it began
+      if (block[2 * i] == 0 && next == 1) continue;       // before it began
       if (i == 0) next += static_cast<double>(got.lost);  // a busy machine may be late; then it has to say so
       right = right && block[2 * i] == next && block[2 * i + 1] == -next;
       ++next;

@@ -6,8 +6,8 @@
 #include <support/temporary_folder.hpp>
 
 #include <fcntl.h>
-#include <thread>
 #include <unistd.h>
+#include <thread>
 
 namespace {
 
@@ -33,7 +33,9 @@ std::size_t count_right(Source& from, std::string* problem = nullptr) {
   for (bool over = false; !over;) {
     const auto got = from.read(block, std::chrono::seconds{2});
     for (std::size_t i = 0; i < got.frames; ++i, ++at)
-      if (block[3 * i] * 32768 != static_cast<double>(at % 32000) || block[3 * i + 1] != -block[3 * i] || block[3 * i + 2] * 32768 != 12345) return 0;
+      if (block[3 * i] * 32768 != static_cast<double>(at % 32000) || block[3 * i + 1] != -block[3 * i] ||
+          block[3 * i + 2] * 32768 != 12345)
+        return 0;
     over = got.ended;
     if (problem != nullptr) *problem += got.problem;
   }
@@ -44,7 +46,8 @@ std::size_t count_right(Source& from, std::string* problem = nullptr) {
 
 TEST_CASE("WAV, RF64 and FLAC files, frame by frame") {
   const test::temporary_folder folder;
-  for (const int format : {SF_FORMAT_WAV | SF_FORMAT_PCM_16, SF_FORMAT_WAVEX | SF_FORMAT_PCM_24, SF_FORMAT_RF64 | SF_FORMAT_PCM_32, SF_FORMAT_FLAC | SF_FORMAT_PCM_24}) {
+  for (const int format : {SF_FORMAT_WAV | SF_FORMAT_PCM_16, SF_FORMAT_WAVEX | SF_FORMAT_PCM_24,
+                           SF_FORMAT_RF64 | SF_FORMAT_PCM_32, SF_FORMAT_FLAC | SF_FORMAT_PCM_24}) {
     CAPTURE(format);
     auto from = rosin::sndfile_source::open(make(folder, "a", format, 5003));
     REQUIRE(from.has_value());
@@ -75,7 +78,8 @@ TEST_CASE("a WAV file through a pipe, in dribs and drabs, and bare samples") {
       }
       ::close(ends[1]);
     }};
-    const std::optional<rosin::frame_format> bare = name[0] == 'b' ? std::optional{rosin::frame_format{96000, 3, 24}} : std::nullopt;
+    const std::optional<rosin::frame_format> bare =
+        name[0] == 'b' ? std::optional{rosin::frame_format{96000, 3, 24}} : std::nullopt;
     auto from = rosin::sndfile_source::open_pipe(ends[0], bare);
     REQUIRE(from.has_value());
     CHECK(from->format().bits == (bare ? 24 : 16));

@@ -14,8 +14,8 @@ std::string number(std::uint64_t value, int bytes) {
 }
 
 std::string wav(std::uint64_t promised, std::size_t present, const std::string& extra = "", const std::string& form = "RIFF") {
-  return form + number(4 + extra.size() + 24 + 8 + promised, 4) + "WAVE" + extra + "fmt " + number(16, 4) + std::string(16, '\1') + "data" +
-         number(promised, 4) + std::string(present, '\0');
+  return form + number(4 + extra.size() + 24 + 8 + promised, 4) + "WAVE" + extra + "fmt " + number(16, 4) +
+         std::string(16, '\1') + "data" + number(promised, 4) + std::string(present, '\0');
 }
 
 std::optional<rosin::riff_layout> layout(const std::string& bytes) {

@@ -68,8 +68,9 @@ TEST_CASE("a sound folder opens, and its takes are in newtons") {
 TEST_CASE("recordings of another channel count, too slow, missing or cut: all of it at once, with lines") {
   const rig_on_disk rig;
   rig.write("a.wav", 1);
-  CHECK(rig.problems() == "rig.toml:11: take \"a\".file: a.wav: has 1 channel(s), but channels.far.index is 1\n"
-                          "rig.toml:16: take \"b\".file: b.wav: has 2 channel(s), the first take has 1");
+  CHECK(rig.problems() ==
+        "rig.toml:11: take \"a\".file: a.wav: has 1 channel(s), but channels.far.index is 1\n"
+        "rig.toml:16: take \"b\".file: b.wav: has 2 channel(s), the first take has 1");
   rig.write("a.wav", 3);
   CHECK(rig.problems() == "rig.toml:16: take \"b\".file: b.wav: has 2 channel(s), the first take has 3");
   rig.write("a.wav", 2, 1000);

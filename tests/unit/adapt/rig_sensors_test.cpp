@@ -11,19 +11,36 @@ TEST_CASE("[channels]: each key, its type, range and name") {
       {"index = 0", "index = -1", "rig.toml:13: channels.near.index: must be 0 ... 1023, is -1"},
       {"index = 0", "index = 0.5", "rig.toml:13: channels.near.index: must be a whole number"},
       {"index = 0", "index = 1", "rig.toml:14: channels.near.index: is 1, as that of far"},
-      {"index = 0", "indx = 0", "rig.toml:13: channels.near.index: is missing\nrig.toml:13: channels.near.indx: unknown key; did you mean index?"},
+      {"index = 0", "indx = 0",
+       "rig.toml:13: channels.near.index: is missing\nrig.toml:13: channels.near.indx: unknown key; did you mean index?"},
       {"newtons_per_full_scale = 1.65, ", "", "rig.toml:13: channels.near.newtons_per_full_scale: is missing"},
-      {"newtons_per_full_scale = 1.65", "newtons_per_full_scale = -1.65", "rig.toml:13: channels.near.newtons_per_full_scale: must be larger than 0 and at most 1e+09, is -1.65"},
-      {"gain_tolerance = 0.05", "gain_tolerance = 1", "rig.toml:13: channels.near.gain_tolerance: must be at least 0 and less than 1, is 1"},
-      {"gain_tolerance = 0.05", "position = 0.1", "rig.toml:13: channels.near.position: only a channel that measures the string's motion has a position"},
-      {"ac_coupled_Hz = 0.5", "ac_coupled_Hz = 0", "rig.toml:14: channels.far.ac_coupled_Hz: must be larger than 0 and at most 10000, is 0"},
-      {"index = 2, quantity = \"string-velocity\"", "index = 2", "rig.toml:15: channels.magnet.quantity: is missing\nrig.toml:15: channels.magnet.position: only a channel that measures the string's motion has a position"},
-      {"string-velocity", "string-velocty", "rig.toml:15: channels.magnet.position: only a channel that measures the string's motion has a position\nrig.toml:15: channels.magnet.quantity: unknown name \"string-velocty\"; did you mean string-velocity?"},
-      {"position = 0.30 }", "position = 1.0 }", "rig.toml:15: channels.magnet.position: must be larger than 0 and less than 1, is 1"},
-      {"position = 0.30 }", "newtons_per_full_scale = 2 }", "rig.toml:15: channels.magnet.newtons_per_full_scale: is no scale of the quantity string-velocity"},
-      {"\"bow-speed\"", "\"termination-force\"", "rig.toml:16: channels.sled.metres_per_second_per_full_scale: is no scale of the quantity termination-force\nrig.toml:16: channels.sled.newtons_per_full_scale: is missing\nrig.toml:16: channels.sled.quantity: the channels near and far, and only they, measure termination-force"},
-      {"gain_tolerance = 0.05", "quantity = \"unused\"", "rig.toml:13: channels.near.newtons_per_full_scale: is no scale of the quantity unused\nrig.toml:13: channels.near.quantity: the channels near and far, and only they, measure termination-force"},
-      {"sled = { index = 4, quantity = \"bow-speed\", metres_per_second_per_full_scale = 1 }", "sled = 4", "rig.toml:16: channels.sled: must be a table, as { index = 0, ... }"},
+      {"newtons_per_full_scale = 1.65", "newtons_per_full_scale = -1.65",
+       "rig.toml:13: channels.near.newtons_per_full_scale: must be larger than 0 and at most 1e+09, is -1.65"},
+      {"gain_tolerance = 0.05", "gain_tolerance = 1",
+       "rig.toml:13: channels.near.gain_tolerance: must be at least 0 and less than 1, is 1"},
+      {"gain_tolerance = 0.05", "position = 0.1",
+       "rig.toml:13: channels.near.position: only a channel that measures the string's motion has a position"},
+      {"ac_coupled_Hz = 0.5", "ac_coupled_Hz = 0",
+       "rig.toml:14: channels.far.ac_coupled_Hz: must be larger than 0 and at most 10000, is 0"},
+      {"index = 2, quantity = \"string-velocity\"", "index = 2",
+       "rig.toml:15: channels.magnet.quantity: is missing\nrig.toml:15: channels.magnet.position: only a channel that measures "
+       "the string's motion has a position"},
+      {"string-velocity", "string-velocty",
+       "rig.toml:15: channels.magnet.position: only a channel that measures the string's motion has a position\nrig.toml:15: "
+       "channels.magnet.quantity: unknown name \"string-velocty\"; did you mean string-velocity?"},
+      {"position = 0.30 }", "position = 1.0 }",
+       "rig.toml:15: channels.magnet.position: must be larger than 0 and less than 1, is 1"},
+      {"position = 0.30 }", "newtons_per_full_scale = 2 }",
+       "rig.toml:15: channels.magnet.newtons_per_full_scale: is no scale of the quantity string-velocity"},
+      {"\"bow-speed\"", "\"termination-force\"",
+       "rig.toml:16: channels.sled.metres_per_second_per_full_scale: is no scale of the quantity termination-force\nrig.toml:16: "
+       "channels.sled.newtons_per_full_scale: is missing\nrig.toml:16: channels.sled.quantity: the channels near and far, and "
+       "only they, measure termination-force"},
+      {"gain_tolerance = 0.05", "quantity = \"unused\"",
+       "rig.toml:13: channels.near.newtons_per_full_scale: is no scale of the quantity unused\nrig.toml:13: "
+       "channels.near.quantity: the channels near and far, and only they, measure termination-force"},
+      {"sled = { index = 4, quantity = \"bow-speed\", metres_per_second_per_full_scale = 1 }", "sled = 4",
+       "rig.toml:16: channels.sled: must be a table, as { index = 0, ... }"},
   };
   // the order within a line is that of discovery
   for (const auto& row : rows) {
@@ -37,8 +54,10 @@ TEST_CASE("[channels]: each key, its type, range and name") {
 }
 
 TEST_CASE("every quantity has its own scale") {
-  for (const auto& row : {std::pair{"string-displacement", "metres_per_full_scale"}, {"sound", "pascals_per_full_scale"},
-                                      {"normal-force", "newtons_per_full_scale"}, {"bow-speed", "metres_per_second_per_full_scale"}}) {
+  for (const auto& row : {std::pair{"string-displacement", "metres_per_full_scale"},
+                          {"sound", "pascals_per_full_scale"},
+                          {"normal-force", "newtons_per_full_scale"},
+                          {"bow-speed", "metres_per_second_per_full_scale"}}) {
     const auto [quantity, key] = row;
     CAPTURE(row.first);
     const auto text = test::changed("quantity = \"bow-speed\", metres_per_second_per_full_scale = 1",
@@ -56,13 +75,17 @@ TEST_CASE("[terminations]: rigid, fit, modes or a file") {
       {"near = \"fit\"", "left = \"fit\"", "rig.toml:27: terminations.left: unknown key; known here: near, far"},
       {"near = \"fit\"", "near = {}", "rig.toml:27: terminations.near.modes: is missing"},
       {"[ { frequency_Hz = 460, q = 35, mass_kg = 0.12 } ]", "[]", "rig.toml:28: terminations.far.modes: is empty"},
-      {"[ { frequency_Hz = 460, q = 35, mass_kg = 0.12 } ]", "1", "rig.toml:28: terminations.far.modes: must be a list, as [ { frequency_Hz = 460, q = 35, mass_kg = 0.12 } ]"},
+      {"[ { frequency_Hz = 460, q = 35, mass_kg = 0.12 } ]", "1",
+       "rig.toml:28: terminations.far.modes: must be a list, as [ { frequency_Hz = 460, q = 35, mass_kg = 0.12 } ]"},
       {"[ { frequency_Hz = 460, q = 35, mass_kg = 0.12 } ]", "[1]", "rig.toml:28: terminations.far.modes[0]: must be a table"},
       {"frequency_Hz = 460, ", "", "rig.toml:28: terminations.far.modes[0].frequency_Hz: is missing"},
       {"q = 35, ", "", "rig.toml:28: terminations.far.modes[0].q: is missing"},
       {", mass_kg = 0.12", "", "rig.toml:28: terminations.far.modes[0].mass_kg: is missing"},
-      {"mass_kg = 0.12", "mass_kg = -0.12", "rig.toml:28: terminations.far.modes[0].mass_kg: must be larger than 0 and at most 10000, is -0.12"},
-      {"mass_kg = 0.12", "mass_g = 120", "rig.toml:28: terminations.far.modes[0].mass_kg: is missing\nrig.toml:28: terminations.far.modes[0].mass_g: unknown key; did you mean mass_kg?"},
+      {"mass_kg = 0.12", "mass_kg = -0.12",
+       "rig.toml:28: terminations.far.modes[0].mass_kg: must be larger than 0 and at most 10000, is -0.12"},
+      {"mass_kg = 0.12", "mass_g = 120",
+       "rig.toml:28: terminations.far.modes[0].mass_kg: is missing\nrig.toml:28: terminations.far.modes[0].mass_g: unknown key; "
+       "did you mean mass_kg?"},
   };
   CHECK_BAD_KEYS(rows)
 }

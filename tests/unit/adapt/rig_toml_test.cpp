@@ -56,9 +56,11 @@ TEST_CASE("the root: schema, title, tables") {
       {"schema = 1", "schema = \"1\"", "rig.toml:1: schema: must be a whole number"},
       {"title = \"E string, glass rod, run 12\"", "title = 12", "rig.toml:2: title: must be a text in quotes"},
       {"title = ", "titel = ", "rig.toml:2: titel: unknown key; did you mean title?"},
-      {"[contact]\nposition = 0.30", "[contact]\nposition = 0.0", "rig.toml:19: contact.position: must be larger than 0 and less than 1, is 0"},
+      {"[contact]\nposition = 0.30", "[contact]\nposition = 0.0",
+       "rig.toml:19: contact.position: must be larger than 0 and less than 1, is 0"},
       {"[contact]\nposition = 0.30\n", "[contact]\n", "rig.toml:18: contact.position: is missing"},
-      {"[contact]\nposition = 0.30", "[contact]\nposition = 0.3\nposition_tolerance = 1", "rig.toml:20: contact.position_tolerance: must be at least 0 and at most 0.5, is 1"},
+      {"[contact]\nposition = 0.30", "[contact]\nposition = 0.3\nposition_tolerance = 1",
+       "rig.toml:20: contact.position_tolerance: must be at least 0 and at most 0.5, is 1"},
       {"[torsion]", "[torison]", "rig.toml:21: torison: unknown key; did you mean torsion?"},
       {"[torsion]\nspeed_ratio = 7.0\nimpedance_ratio = 3.5\nq = 15", "", ""},
   };
@@ -76,10 +78,11 @@ TEST_CASE("all problems at once, in the order of the file") {
   std::string text = test::changed("tension_N = 72.5", "tension_N = -1");
   text = test::changed("speed_ratio = 7.0\n", "", text);
   text = test::changed("force_N = 1.0", "force = 1.0", text);
-  CHECK(test::problems_of(text) == "rig.toml:6: string.tension_N: must be larger than 0 and at most 1000000, is -1\n"
-                                   "rig.toml:21: torsion.speed_ratio: is missing\n"
-                                   "rig.toml:44: take[0].force_N: is missing\n"
-                                   "rig.toml:48: take[0].force: unknown key; did you mean force_N?");
+  CHECK(test::problems_of(text) ==
+        "rig.toml:6: string.tension_N: must be larger than 0 and at most 1000000, is -1\n"
+        "rig.toml:21: torsion.speed_ratio: is missing\n"
+        "rig.toml:44: take[0].force_N: is missing\n"
+        "rig.toml:48: take[0].force: unknown key; did you mean force_N?");
 }
 
 TEST_CASE("what is not TOML is named with its line") {
@@ -94,7 +97,8 @@ TEST_CASE("what is not TOML is named with its line") {
 TEST_CASE("a rig without force transducers needs little: a fundamental, a channel, a take") {
   const auto r = rosin::parse_rig(
       "schema = 1\n[string]\nfundamental_Hz = 196\n[channels]\npickup = { index = 0, quantity = 'string-velocity' }\n"
-      "[[take]]\nname = 'g'\nkind = 'pluck'\nfile = 'g.flac'\nposition_unknown = true\nstrength = 3\n", "rig.toml");
+      "[[take]]\nname = 'g'\nkind = 'pluck'\nfile = 'g.flac'\nposition_unknown = true\nstrength = 3\n",
+      "rig.toml");
   CHECK(r.error() == "");
   REQUIRE(r);
   CHECK_FALSE(r->has_both_forces());
@@ -128,7 +132,8 @@ TEST_CASE("an admittance from a file") {
   };
   CHECK(load().error().find(":27: terminations.near: ") != std::string::npos);
   CHECK(load().error().find("bridge.csv: cannot be read") != std::string::npos);
-  CHECK(with("frequency_Hz,admittance_re\n1,2\n") == "bridge.csv: must have the columns frequency_Hz, admittance_re, admittance_im");
+  CHECK(with("frequency_Hz,admittance_re\n1,2\n") ==
+        "bridge.csv: must have the columns frequency_Hz, admittance_re, admittance_im");
   const std::string head = "frequency_Hz,admittance_re,admittance_im\n";
   CHECK(with(head + "100,0.01,0\n") == "bridge.csv: needs at least two rows");
   CHECK(with(head + "100,0.01,0\n100,0.01,0\n") == "bridge.csv: row 2: frequency_Hz must ascend and not be negative");

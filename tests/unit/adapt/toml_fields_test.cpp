@@ -26,10 +26,11 @@ TEST_CASE("a number may be written as a whole one, and has to be finite and in i
   CHECK_FALSE(r.fields.number("d", rosin::up_to(10)));
   CHECK_FALSE(r.fields.number("e", rosin::up_to(10)));
   CHECK_FALSE(r.fields.number("f", {}));
-  CHECK(r.problems() == "a.toml:3: t.c: must be larger than 0 and at most 10, is -1\n"
-                        "a.toml:4: t.d: must be larger than 0 and at most 10, is nan\n"
-                        "a.toml:5: t.e: must be a number\n"
-                        "a.toml:6: t.f: must be a finite number, is inf");
+  CHECK(r.problems() ==
+        "a.toml:3: t.c: must be larger than 0 and at most 10, is -1\n"
+        "a.toml:4: t.d: must be larger than 0 and at most 10, is nan\n"
+        "a.toml:5: t.e: must be a number\n"
+        "a.toml:6: t.f: must be a finite number, is inf");
 }
 
 TEST_CASE("whole numbers, texts, flags and choices say what they want to be") {
@@ -41,9 +42,10 @@ TEST_CASE("whole numbers, texts, flags and choices say what they want to be") {
   CHECK_FALSE(r.fields.text("l"));
   CHECK_FALSE(r.fields.flag("m"));
   CHECK_FALSE(r.fields.choice("n", colours));
-  CHECK(r.problems() == "a.toml:1: t.i: must be a whole number\na.toml:2: t.j: must be 0 ... 9, is 70\n"
-                        "a.toml:3: t.k: must not be empty\na.toml:4: t.l: must be a text in quotes\n"
-                        "a.toml:5: t.m: must be true or false\na.toml:6: t.n: unknown name \"blu\"; did you mean blue?");
+  CHECK(r.problems() ==
+        "a.toml:1: t.i: must be a whole number\na.toml:2: t.j: must be 0 ... 9, is 70\n"
+        "a.toml:3: t.k: must not be empty\na.toml:4: t.l: must be a text in quotes\n"
+        "a.toml:5: t.m: must be true or false\na.toml:6: t.n: unknown name \"blu\"; did you mean blue?");
 }
 
 TEST_CASE("tables and lists") {
@@ -54,7 +56,8 @@ TEST_CASE("tables and lists") {
   CHECK(seen == 1);
   CHECK(r.fields.table("c") == nullptr);
   CHECK(r.fields.list("d", "a list of things") == nullptr);
-  CHECK(r.problems() == "a.toml:2: t.b[1]: must be a table\na.toml:3: t.c: must be a table\na.toml:4: t.d: must be a list of things");
+  CHECK(r.problems() ==
+        "a.toml:2: t.b[1]: must be a table\na.toml:3: t.c: must be a table\na.toml:4: t.d: must be a list of things");
 }
 
 TEST_CASE("keys that nobody asked for are unknown, with the nearest that was asked for") {

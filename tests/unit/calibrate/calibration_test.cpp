@@ -38,7 +38,8 @@ TEST_CASE("a calibration carries values and covariance over from the fit") {
   CHECK(c.gain[0] == doctest::Approx(1.1));
   const double from_pitch = c.at.delay_s[0] * 0.01 / 650, from_position = 1e-4 / 1300;
   CHECK(std::sqrt(c.covariance(0, 0)) == doctest::Approx(std::hypot(from_pitch, from_position)));
-  CHECK(c.covariance(0, 1) == doctest::Approx(c.at.delay_s[0] * c.at.delay_s[1] * std::pow(0.01 / 650, 2) - from_position * from_position));
+  CHECK(c.covariance(0, 1) ==
+        doctest::Approx(c.at.delay_s[0] * c.at.delay_s[1] * std::pow(0.01 / 650, 2) - from_position * from_position));
   CHECK(c.scale_relative_sd == doctest::Approx(0.02).epsilon(1e-3));
   CHECK(std::sqrt(c.covariance(5, 5)) == doctest::Approx(0.02 * std::sqrt(2 * 0.001)));
   CHECK(c.impedance_relative_sd == 0.015);

@@ -30,14 +30,17 @@ TEST_CASE("sums of powers by doubling are the sums term by term, for any count")
       }
       const auto sums = rosin::power_sums(p, step_s, count);
       for (std::size_t a = 0; a < 3; ++a)
-        CHECK(std::abs(sums[a] - direct[a]) <= 1e-11 * (static_cast<double>(count) * std::pow(static_cast<double>(count) * step_s, a) + 1e-30));
+        CHECK(std::abs(sums[a] - direct[a]) <=
+              1e-11 * (static_cast<double>(count) * std::pow(static_cast<double>(count) * step_s, a) + 1e-30));
     }
 }
 
 TEST_CASE("sums of powers in closed form and by doubling are the same where one takes over from the other") {
   constexpr std::size_t count = 200000;
-  for (const complex p : {complex(-3, 0), complex(-9, 3), complex(-11, 5), complex(-2, 40), complex(-30, 4000), complex(-900, 350e3)}) {
-    const auto sums = rosin::power_sums(p, step_s, count), doubled = rosin::detail::doubled_sums(std::exp(p * step_s), step_s, count);
+  for (const complex p :
+       {complex(-3, 0), complex(-9, 3), complex(-11, 5), complex(-2, 40), complex(-30, 4000), complex(-900, 350e3)}) {
+    const auto sums = rosin::power_sums(p, step_s, count),
+               doubled = rosin::detail::doubled_sums(std::exp(p * step_s), step_s, count);
     for (std::size_t a = 0; a < 3; ++a) CHECK(std::abs(sums[a] - doubled[a]) <= 2e-10 * std::abs(doubled[a]));
   }
 }
@@ -73,12 +76,14 @@ TEST_CASE("sums and products of lines are what one adds up sample by sample, ove
         for (std::size_t c = 0; c < 2; ++c) {
           const auto col = static_cast<Eigen::Index>(c);
           direct(k, col) += (lines[n].residue[c] * z).real();
-          onto[c].row(static_cast<Eigen::Index>(n)) += signals(k, col) * Eigen::RowVector4d(z.real(), z.imag(), t * z.real(), t * z.imag());
+          onto[c].row(static_cast<Eigen::Index>(n)) +=
+              signals(k, col) * Eigen::RowVector4d(z.real(), z.imag(), t * z.real(), t * z.imag());
         }
       }
     }
     CHECK((sum - direct).cwiseAbs().maxCoeff() < 1e-10 * (1 + direct.cwiseAbs().maxCoeff()));
     const auto products = run.products(signals);
-    for (std::size_t c = 0; c < 2; ++c) CHECK((products[c] - onto[c]).cwiseAbs().maxCoeff() < 1e-10 * (1 + onto[c].cwiseAbs().maxCoeff()));
+    for (std::size_t c = 0; c < 2; ++c)
+      CHECK((products[c] - onto[c]).cwiseAbs().maxCoeff() < 1e-10 * (1 + onto[c].cwiseAbs().maxCoeff()));
   }
 }

@@ -12,7 +12,9 @@ TEST_CASE("the spectrum of a decaying tone is 1 / (s - p), off the axis, however
   const auto spectrum = rosin::damped_spectrum(line, x);
   CHECK(spectrum.size() == line.bins());
   CHECK(line.samples < x.size());
-  const auto sum = [&](std::complex<double> pole, std::complex<double> s) { return 0.5 / rate_Hz / (1.0 - std::exp((pole - s) / rate_Hz)); };
+  const auto sum = [&](std::complex<double> pole, std::complex<double> s) {
+    return 0.5 / rate_Hz / (1.0 - std::exp((pole - s) / rate_Hz));
+  };
   for (std::size_t k = 0; k < line.bins(); ++k) {
     const std::complex<double> s = line.at(k), exact = sum(p, s) + sum(std::conj(p), s);
     CHECK(std::abs(spectrum[k] - exact) < 1e-5 * std::abs(exact) + 2e-8);

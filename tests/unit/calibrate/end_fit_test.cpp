@@ -12,7 +12,8 @@ double mass_kg(const rosin::fitted_mode& m) { return test::steel_e.impedance_Ns_
 }  // namespace
 
 TEST_CASE("a mode at either end, found from two plucks with its mass, and the string beside it") {
-  const test::moving_end_rig rig{test::steel_e, {std::vector<test::end_mode>{{900, 30, 0.004}}, std::vector<test::end_mode>{{2700, 15, 0.012}}}};
+  const test::moving_end_rig rig{test::steel_e,
+                                 {std::vector<test::end_mode>{{900, 30, 0.004}}, std::vector<test::end_mode>{{2700, 15, 0.012}}}};
   const auto found = rosin::fit_ends(test::pluck_at(rig, {0.3, 0.2}, 0.12), test::about_steel_e);
   REQUIRE(found);
   CHECK(found->plucks.value[0] == doctest::Approx(659.69).epsilon(1e-5));

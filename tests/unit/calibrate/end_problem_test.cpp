@@ -7,14 +7,15 @@
 
 namespace {
 
-const test::moving_end_rig rig{test::steel_e, {std::vector<test::end_mode>{{900, 40, 4e-3}}, std::vector<test::end_mode>{{2500, 15, 8e-3}}}};
+const test::moving_end_rig rig{test::steel_e,
+                               {std::vector<test::end_mode>{{900, 40, 4e-3}}, std::vector<test::end_mode>{{2500, 15, 8e-3}}}};
 
 /// The truth as values of the fit; the release is halfway into the step in which the force goes.
 Eigen::VectorXd truth(const rosin::end_model& m, const std::vector<rosin::pluck_take>& takes) {
   Eigen::VectorXd v(m.size());
   const double Z = test::steel_e.impedance_Ns_m(), t0 = 0.008 - 0.5 / (8 * takes[0].rate_Hz);
-  v.head(m.layout.size()) = m.layout.initial(takes, {.inharmonicity = test::steel_e.inharmonicity()}, test::steel_e.fundamental_Hz,
-                                             std::vector<double>(takes.size(), t0), {0.3, 0.2});
+  v.head(m.layout.size()) = m.layout.initial(takes, {.inharmonicity = test::steel_e.inharmonicity()},
+                                             test::steel_e.fundamental_Hz, std::vector<double>(takes.size(), t0), {0.3, 0.2});
   v.tail<6>() << std::log(900), std::log(40), std::log(Z / 4e-3), std::log(2500), std::log(15), std::log(Z / 8e-3);
   return v;
 }
@@ -28,7 +29,8 @@ TEST_CASE("with the true values next to nothing of a simulated pluck is left") {
   for (std::size_t t = 0; t < 2; ++t)
     for (std::size_t c = 0; c < 2; ++c) {
       const auto r = problem.at(m, truth(m, takes), t, c);
-      const double all = r.model_power.sum() * 2 / static_cast<double>(problem.line(t).samples) * std::pow(problem.line(t).rate_Hz, 2);
+      const double all =
+          r.model_power.sum() * 2 / static_cast<double>(problem.line(t).samples) * std::pow(problem.line(t).rate_Hz, 2);
       CHECK(r.residual.norm() < 2e-3 * std::sqrt(all));
     }
 }
@@ -47,7 +49,8 @@ TEST_CASE("the Jacobian is that of the residual") {
       const Eigen::VectorXd by = (problem.at(m, down, 1, c).residual - problem.at(m, up, 1, c).residual) / (2 * h);
       const Eigen::VectorXd exact = problem.at(m, v, 1, c).jacobian.col(p);
       CHECK((by - exact).norm() <= 0.2 * by.norm() + 1e-9);  // roughly: loss and stiffness also turn what the ends feel, by 1/Q
-      if (p >= m.layout.size() || p == rosin::pluck_layout::fundamental || p >= rosin::pluck_layout::gain_near) CHECK((by - exact).norm() <= 2e-3 * by.norm() + 1e-9);
+      if (p >= m.layout.size() || p == rosin::pluck_layout::fundamental || p >= rosin::pluck_layout::gain_near)
+        CHECK((by - exact).norm() <= 2e-3 * by.norm() + 1e-9);
     }
   }
 }

@@ -9,7 +9,8 @@ TEST_CASE("the first guess is the mode that is there, at its end and about as he
   const test::moving_end_rig rig{test::steel_e, {std::vector<test::end_mode>{}, std::vector<test::end_mode>{{3100, 18, 0.05}}}};
   const auto takes = test::pluck_at(rig, {0.3}, 0.1, 1e-5);
   const rosin::end_model m{rosin::pluck_layout(takes, {}), {}, {}, {}};
-  const Eigen::VectorXd v = m.layout.initial(takes, {.inharmonicity = test::steel_e.inharmonicity()}, test::steel_e.fundamental_Hz, {0.008 - 0.5 / 320e3}, {0.3});
+  const Eigen::VectorXd v = m.layout.initial(takes, {.inharmonicity = test::steel_e.inharmonicity()},
+                                             test::steel_e.fundamental_Hz, {0.008 - 0.5 / 320e3}, {0.3});
   rosin::end_problem problem(takes, {0.006}, 440, 12e3);
   problem.set_noise({1e-5, 1e-5});
   const auto eq = problem.linearise(m, v);

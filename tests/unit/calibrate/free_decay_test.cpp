@@ -15,21 +15,32 @@ constexpr double pi = 3.14159265358979323846, rate_Hz = 128e3;
 using samples = std::vector<double>;
 
 rosin::modal_rig e_rig() {
-  return {.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}}, .torsion = {7, 3.5, 15}};
+  return {.string = {.length_m = 0.314,
+                     .tension_N = 72.5,
+                     .fundamental_Hz = 660,
+                     .bending_stiffness_Nm2 = 4.7e-5,
+                     .loss = {.quality = 1000}},
+          .torsion = {7, 3.5, 15}};
 }
 
-double stiffness_of(const rosin::string_parameters& s) { return s.bending_stiffness_Nm2 * std::pow(pi / s.length_m, 2) / s.tension_N; }
+double stiffness_of(const rosin::string_parameters& s) {
+  return s.bending_stiffness_Nm2 * std::pow(pi / s.length_m, 2) / s.tension_N;
+}
 
 rosin::free_decay_options expecting(const rosin::string_parameters& s) { return {.inharmonicity = 1.1 * stiffness_of(s)}; }
 
 /// Bowed, and lifted at 0.08 s.
 rosin::modal_take lifted() {
-  const auto rod = [](double t) noexcept { return rosin::rod_state{0.2 * std::min(t / 0.01, 1.0), 0.3 * std::clamp((0.08 - t) / 0.004, 0.0, 1.0)}; };
-  return *rosin::simulate_stroke(e_rig(), rosin::velocity_curve<rosin::two_exponential_curve<>>{}, rod, {.duration_s = 0.25}, {.oversampling = 4, .mode_limit_Hz = 160e3});
+  const auto rod = [](double t) noexcept {
+    return rosin::rod_state{0.2 * std::min(t / 0.01, 1.0), 0.3 * std::clamp((0.08 - t) / 0.004, 0.0, 1.0)};
+  };
+  return *rosin::simulate_stroke(e_rig(), rosin::velocity_curve<rosin::two_exponential_curve<>>{}, rod, {.duration_s = 0.25},
+                                 {.oversampling = 4, .mode_limit_Hz = 160e3});
 }
 
 samples recorded(const samples& force_N, std::uint64_t seed) {
-  return rosin::convert(force_N, rate_Hz, {.gain = 1.03, .newtons_per_full_scale = 1, .noise_N = 3e-4, .ac_coupled_Hz = 3}, seed).newtons();
+  return rosin::convert(force_N, rate_Hz, {.gain = 1.03, .newtons_per_full_scale = 1, .noise_N = 3e-4, .ac_coupled_Hz = 3}, seed)
+      .newtons();
 }
 
 samples wave(std::size_t size, double (*f)(double)) {
@@ -66,10 +77,13 @@ TEST_CASE("loss that grows with frequency is told from loss that does not") {
   auto rig = e_rig();
   rig.string.loss = {.quality = 1500, .internal_s = 5e-8};
   const auto rod = [](double t) noexcept { return rosin::rod_state{0.15, 0.3 * std::clamp((0.03 - t) / 0.002, 0.0, 1.0)}; };
-  const auto take = rosin::simulate_stroke(rig, rosin::velocity_curve<rosin::two_exponential_curve<>>{}, rod, {.duration_s = 0.17}, {.oversampling = 4, .mode_limit_Hz = 160e3});
-  const auto decay = rosin::fit_free_decay({recorded(take->force_near_N, 1), recorded(take->force_far_N, 2)}, rate_Hz, 660, 0.032, expecting(rig.string));
+  const auto take = rosin::simulate_stroke(rig, rosin::velocity_curve<rosin::two_exponential_curve<>>{}, rod,
+                                           {.duration_s = 0.17}, {.oversampling = 4, .mode_limit_Hz = 160e3});
+  const auto decay = rosin::fit_free_decay({recorded(take->force_near_N, 1), recorded(take->force_far_N, 2)}, rate_Hz, 660, 0.032,
+                                           expecting(rig.string));
   REQUIRE(decay);
-  for (const int n : {1, 5, 15, 25}) CHECK(decay->quality(n) == doctest::Approx(1 / rig.string.loss.inverse_q(decay->frequency_Hz(n))).epsilon(0.01));
+  for (const int n : {1, 5, 15, 25})
+    CHECK(decay->quality(n) == doctest::Approx(1 / rig.string.loss.inverse_q(decay->frequency_Hz(n))).epsilon(0.01));
 }
 
 TEST_CASE("a bow that stays on ends nowhere, and no bow at all neither") {

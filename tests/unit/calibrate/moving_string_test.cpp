@@ -43,7 +43,8 @@ TEST_CASE("the derivatives are those of the forces") {
   for (std::size_t by = 0; by < 2; ++by) {
     auto t1 = theta, t2 = theta, z1 = z, z2 = z;
     t1[by] += h, t2[by] -= h, z1[by] += h, z2[by] -= h;
-    const auto a = rosin::moving_string(p, t1, z), b = rosin::moving_string(p, t2, z), c = rosin::moving_string(p, theta, z1), d = rosin::moving_string(p, theta, z2);
+    const auto a = rosin::moving_string(p, t1, z), b = rosin::moving_string(p, t2, z), c = rosin::moving_string(p, theta, z1),
+               d = rosin::moving_string(p, theta, z2);
     for (std::size_t j = 0; j < 2; ++j) {
       CHECK(std::abs((a.force[j] - b.force[j]) / (2 * h) - r.by_phase[j][by]) < 1e-7);
       CHECK(std::abs((c.force[j] - d.force[j]) / (2 * h) - r.by_admittance[j][by]) < 1e-7);

@@ -18,7 +18,8 @@ std::vector<complex> drawn_lines(bool second, double noise) {
   std::vector<complex> z;
   for (int j = 0; j < 480; ++j) {
     const double t = j / baseband_rate_Hz;
-    z.push_back(std::exp(complex(-1.2, 9) * t) + (second ? 0.6 * std::exp(complex(-0.4, 15) * t) : 0.0) + complex(gauss(random), gauss(random)));
+    z.push_back(std::exp(complex(-1.2, 9) * t) + (second ? 0.6 * std::exp(complex(-0.4, 15) * t) : 0.0) +
+                complex(gauss(random), gauss(random)));
   }
   return z;
 }

@@ -14,7 +14,8 @@ constexpr double line_rate_Hz = 200;
 
 std::vector<complex> line(double decay, double detuning, complex amplitude, std::size_t n = 200) {
   std::vector<complex> z;
-  for (std::size_t j = 0; j < n; ++j) z.push_back(amplitude * std::exp(complex(-decay, detuning) * (static_cast<double>(j) / line_rate_Hz)));
+  for (std::size_t j = 0; j < n; ++j)
+    z.push_back(amplitude * std::exp(complex(-decay, detuning) * (static_cast<double>(j) / line_rate_Hz)));
   return z;
 }
 

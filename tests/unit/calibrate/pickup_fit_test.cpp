@@ -37,7 +37,8 @@ TEST_CASE("pitch, inharmonicity and loss from one channel, from 2 % beside the p
 TEST_CASE("a tone that does not die away is no string that was let go") {
   std::vector<double> x(66150);
   for (std::size_t i = 0; i < x.size(); ++i)
-    for (int n = 1; n <= 20; ++n) x[i] += std::cos(2 * std::numbers::pi * 220.0 * n * static_cast<double>(i) / pickup_rate_Hz + n) / n;
+    for (int n = 1; n <= 20; ++n)
+      x[i] += std::cos(2 * std::numbers::pi * 220.0 * n * static_cast<double>(i) / pickup_rate_Hz + n) / n;
   const auto fit = rosin::fit_pickup(x, pickup_rate_Hz, 220);
   REQUIRE_FALSE(fit);
   CHECK(fit.error().find("do not clearly decay") != std::string::npos);

@@ -23,7 +23,8 @@ TEST_CASE("a glide of pitch is found, and none is found where there is none") {
     const rosin::baseband_bank bank{x, glide_rate_Hz, 40};
     std::vector<rosin::partial_track> tracks;
     for (int n = 1; n <= 6; ++n)
-      if (auto t = rosin::track_partial(bank, n, n * 247.1 * std::sqrt(1 + 6e-5 * n * n), 5, 0.2, 1.4)) tracks.push_back(*std::move(t));
+      if (auto t = rosin::track_partial(bank, n, n * 247.1 * std::sqrt(1 + 6e-5 * n * n), 5, 0.2, 1.4))
+        tracks.push_back(*std::move(t));
     REQUIRE(tracks.size() >= 5);
     const rosin::glide_estimate found = rosin::estimate_glide(tracks);
     if (glide == 0) CHECK(std::abs(found.glide.relative) < 2e-4);

@@ -14,7 +14,8 @@ TEST_CASE("a straight line through scattered points: the outlier is left out, th
     std::normal_distribution<double> gauss;
     const Eigen::Index n = 25;
     rosin::robust_data d{Eigen::VectorXd(n), Eigen::VectorXd::Constant(n, 1e-4), Eigen::VectorXd::Ones(n)};
-    for (Eigen::Index i = 0; i < n; ++i) d.y[i] = 2 + 0.5 * static_cast<double>(i) + 0.05 * gauss(random);  // five times the errors given
+    for (Eigen::Index i = 0; i < n; ++i)
+      d.y[i] = 2 + 0.5 * static_cast<double>(i) + 0.05 * gauss(random);  // five times the errors given
     d.y[4] += 10;
     const auto model = [](const Eigen::VectorXd& theta, Eigen::VectorXd& prediction, Eigen::MatrixXd& jacobian) {
       for (Eigen::Index i = 0; i < prediction.size(); ++i) {

@@ -12,20 +12,26 @@
 namespace {
 
 using layout = rosin::pluck_layout;
-const rosin::modal_rig guitar_rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}}};
+const rosin::modal_rig guitar_rig{.string = {.length_m = 0.314,
+                                             .tension_N = 72.5,
+                                             .fundamental_Hz = 659.69,
+                                             .bending_stiffness_Nm2 = 4.7e-5,
+                                             .loss = {.quality = 1000}}};
 
 rosin::pluck_take pluck(double position, double force_N, std::uint64_t seed, double duration_s = 0.14, double ac_Hz = 0,
                         rosin::damping_convention damping = rosin::damping_convention::viscous) {
   rosin::modal_rig with = guitar_rig;
   with.damping = damping;
-  const auto made = rosin::simulate_pluck(with, {.position = position, .force_N = force_N, .release_s = 0.004, .duration_s = duration_s});
+  const auto made =
+      rosin::simulate_pluck(with, {.position = position, .force_N = force_N, .release_s = 0.004, .duration_s = duration_s});
   REQUIRE(made);
   rosin::pluck_take take;
   take.name = "pluck-" + std::to_string(seed);
   take.rate_Hz = made->sample_rate_Hz;
   take.strength_N = 1;
   take.position = position + 0.004;  // as declared: not quite right
-  const rosin::converter near{.gain = 1.02, .newtons_per_full_scale = 1.65, .noise_N = 0.3e-3, .ac_coupled_Hz = ac_Hz, .bits = 16};
+  const rosin::converter near{
+      .gain = 1.02, .newtons_per_full_scale = 1.65, .noise_N = 0.3e-3, .ac_coupled_Hz = ac_Hz, .bits = 16};
   const rosin::converter far{.gain = 0.97, .newtons_per_full_scale = 1.65, .noise_N = 0.4e-3, .ac_coupled_Hz = ac_Hz, .bits = 16};
   take.force_N = {rosin::convert(made->force_near_N, take.rate_Hz, near, 2 * seed).newtons(),
                   rosin::convert(made->force_far_N, take.rate_Hz, far, 2 * seed + 1).newtons()};
@@ -33,7 +39,9 @@ rosin::pluck_take pluck(double position, double force_N, std::uint64_t seed, dou
 }
 
 /// Distance from the truth in stated standard deviations.
-double sigmas(const rosin::pluck_fit_result& fit, Eigen::Index p, double truth) { return std::abs(fit.value[p] - truth) / fit.sd[p]; }
+double sigmas(const rosin::pluck_fit_result& fit, Eigen::Index p, double truth) {
+  return std::abs(fit.value[p] - truth) / fit.sd[p];
+}
 
 }  // namespace
 
@@ -55,7 +63,8 @@ TEST_CASE("one pluck gives string, position, release, ratio of gains and noise, 
   CHECK(fit->residual_ratio[0] < 2e-3);
   CHECK(fit->unidentified.empty());
   // The common scale is the wires' and the converters' tolerance: 3 % and 5 % as limits, on two gains.
-  CHECK(fit->sd[layout::gain_near] == doctest::Approx(1 / std::sqrt(std::pow(0.015, -2) + 2 * std::pow(0.025, -2))).epsilon(0.02));
+  CHECK(fit->sd[layout::gain_near] ==
+        doctest::Approx(1 / std::sqrt(std::pow(0.015, -2) + 2 * std::pow(0.025, -2))).epsilon(0.02));
 }
 
 TEST_CASE("it starts from 2 % off in pitch and 0.02 in position") {
@@ -88,7 +97,8 @@ TEST_CASE("AC-coupled sensors are part of the model") {
 }
 
 TEST_CASE("another convention of damping is taken up by psi") {
-  const auto fit = rosin::fit_plucks({pluck(0.3, 1, 6, 0.07, 0, rosin::damping_convention::kelvin_voigt)}, {.fundamental_Hz = 660});
+  const auto fit =
+      rosin::fit_plucks({pluck(0.3, 1, 6, 0.07, 0, rosin::damping_convention::kelvin_voigt)}, {.fundamental_Hz = 660});
   REQUIRE_MESSAGE(fit, fit.error());
   CHECK(fit->value[layout::convention] == doctest::Approx(1).epsilon(0.3));
   CHECK(fit->misfit < 2);

@@ -20,8 +20,8 @@ rosin::pluck_take ideal(double f0, double position, double release_s) {
   for (std::size_t i = 0; i < 12000; ++i) {
     const double t = std::max(0.0, static_cast<double>(i) / start_rate_Hz - release_s);
     for (int n = 1; n < 40; ++n) {
-      const double part = 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) * std::cos(2 * std::numbers::pi * n * f0 * t) *
-                          std::exp(-std::pow(n / 25.0, 2));
+      const double part = 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) *
+                          std::cos(2 * std::numbers::pi * n * f0 * t) * std::exp(-std::pow(n / 25.0, 2));
       take.force_N[0][i] += part;
       take.force_N[1][i] += n % 2 ? part : -part;
     }
@@ -44,7 +44,7 @@ TEST_CASE("pitch, release and position are found to a fraction of a sample") {
 TEST_CASE("lags between samples") {
   CHECK(rosin::detail::vertex(1, 2, 1) == 0);
   CHECK(rosin::detail::vertex(1, 2, 2) == doctest::Approx(0.5));
-  CHECK(rosin::detail::vertex(0, 1, 5) == 0);  // no maximum
+  CHECK(rosin::detail::vertex(0, 1, 5) == 0);          // no maximum
   CHECK(rosin::detail::vertex(0, 1, 1.9999999) == 1);  // never further than a sample
   std::vector<double> x(4000);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::cos(2 * std::numbers::pi * static_cast<double>(i) / 97.31);
@@ -53,10 +53,11 @@ TEST_CASE("lags between samples") {
 
 TEST_CASE("a position far from the declared one is held near it, for the fit to refuse") {
   const auto start = rosin::find_start({[] {
-    rosin::pluck_take t = ideal(640, 0.27, 0.004);
-    t.position = 0.45;
-    return t;
-  }()}, {.fundamental_Hz = 640});
+                                         rosin::pluck_take t = ideal(640, 0.27, 0.004);
+                                         t.position = 0.45;
+                                         return t;
+                                       }()},
+                                       {.fundamental_Hz = 640});
   REQUIRE(start);
   CHECK(start->position[0] == doctest::Approx(0.41));
 }

@@ -39,7 +39,8 @@ std::vector<T> sampled(const std::vector<partial>& partials, std::size_t n) {
   for (std::size_t j = 0; j < n; ++j) {
     double sum = 0;
     for (const partial& p : partials)
-      sum += p.amplitude * std::cos(2 * std::numbers::pi * static_cast<double>(p.cycles * j % n) / static_cast<double>(n) + p.phase);
+      sum +=
+          p.amplitude * std::cos(2 * std::numbers::pi * static_cast<double>(p.cycles * j % n) / static_cast<double>(n) + p.phase);
     x[j] = static_cast<T>(sum);
   }
   return x;
@@ -56,9 +57,10 @@ double error_dB(const std::vector<T>& is, const std::vector<T>& should) {
   return 20 * std::log10(error / largest);
 }
 
-const std::vector<std::pair<std::size_t, std::size_t>> lengths{{17921, 16384}, {16384, 17921}, {1021, 997}, {997, 1021}, {1000, 1001}, {1001, 1000}, {1000, 3000},
-                                                               {1200, 100},    {8, 12},        {9, 4},      {4, 9},      {1, 5},       {5, 1},       {2, 7},
-                                                               {7, 2},         {6, 6},         {7, 7},      {4409, 8802}};
+const std::vector<std::pair<std::size_t, std::size_t>> lengths{
+    {17921, 16384}, {16384, 17921}, {1021, 997}, {997, 1021}, {1000, 1001}, {1001, 1000},
+    {1000, 3000},   {1200, 100},    {8, 12},     {9, 4},      {4, 9},       {1, 5},
+    {5, 1},         {2, 7},         {7, 2},      {6, 6},      {7, 7},       {4409, 8802}};
 
 }  // namespace
 

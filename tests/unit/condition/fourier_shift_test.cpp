@@ -19,7 +19,8 @@ std::vector<T> tones(std::size_t n, double delay) {
     long double sum = 0.3L;
     for (const std::size_t cycles : {std::size_t{1}, n / 3, n / 2}) {
       const long double per_sample = static_cast<long double>(cycles) / static_cast<long double>(n);
-      sum += std::cos(2 * std::numbers::pi_v<long double> * per_sample * (static_cast<long double>(j) - static_cast<long double>(delay)));
+      sum += std::cos(2 * std::numbers::pi_v<long double> * per_sample *
+                      (static_cast<long double>(j) - static_cast<long double>(delay)));
     }
     x[j] = static_cast<T>(sum);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/condition/fractional_delay_design.hpp>
 
-#include <boost/math/special_functions/bessel.hpp>
 #include <doctest/doctest.h>
+#include <boost/math/special_functions/bessel.hpp>
 
 #include <array>
 #include <cmath>
@@ -15,7 +15,8 @@
 #include <vector>
 
 TEST_CASE("I0 is that of Boost") {
-  for (double x = 0; x < 40; x += 0.7) CHECK(rosin::bessel_i0(x) == doctest::Approx(boost::math::cyl_bessel_i(0, x)).epsilon(1e-14));
+  for (double x = 0; x < 40; x += 0.7)
+    CHECK(rosin::bessel_i0(x) == doctest::Approx(boost::math::cyl_bessel_i(0, x)).epsilon(1e-14));
 }
 
 TEST_CASE("weights are symmetric about the middle, sum to one and pass through the samples") {

@@ -66,7 +66,8 @@ TEST_CASE_TEMPLATE("whole delays are exact, from the shortest to the longest", T
   for (std::size_t delay = 1; delay <= 13; ++delay) {
     line_type line{static_cast<T>(delay)};
     CHECK(line.latency() == static_cast<T>(delay));
-    for (std::size_t n = 0; n < 40; ++n) CHECK(line(static_cast<T>(n * n)) == static_cast<T>(n < delay ? 0 : (n - delay) * (n - delay)));
+    for (std::size_t n = 0; n < 40; ++n)
+      CHECK(line(static_cast<T>(n * n)) == static_cast<T>(n < delay ? 0 : (n - delay) * (n - delay)));
   }
 }
 
@@ -75,7 +76,9 @@ TEST_CASE_TEMPLATE("a Lagrange delay of degree three is exact for cubics", T, fl
   const auto cubic = [](double t) { return 0.5 - t + 0.25 * t * t - 0.125 * t * t * t; };
   for (int n = 0; n < 30; ++n) {
     const T y = line(static_cast<T>(cubic(0.1 * n)));
-    if (n >= 7) CHECK(static_cast<double>(y) == doctest::Approx(cubic(0.1 * (n - 5.375))).epsilon(50 * static_cast<double>(std::numeric_limits<T>::epsilon())));
+    if (n >= 7)
+      CHECK(static_cast<double>(y) ==
+            doctest::Approx(cubic(0.1 * (n - 5.375))).epsilon(50 * static_cast<double>(std::numeric_limits<T>::epsilon())));
   }
 }
 
@@ -96,7 +99,8 @@ TEST_CASE("reset brings back the state after construction") {
   line_type used{6.5}, fresh{6.5};
   for (int n = 0; n < 21; ++n) used(static_cast<float>(n));
   used.reset();
-  for (int n = 0; n < 40; ++n) CHECK(used(std::sin(0.3F * static_cast<float>(n))) == fresh(std::sin(0.3F * static_cast<float>(n))));
+  for (int n = 0; n < 40; ++n)
+    CHECK(used(std::sin(0.3F * static_cast<float>(n))) == fresh(std::sin(0.3F * static_cast<float>(n))));
 }
 
 TEST_CASE("a new delay takes effect from the next sample on, with all that the line holds") {

@@ -26,7 +26,8 @@ TEST_CASE_TEMPLATE("what the mirrors leave alone comes out times the window", T,
       if (half_turns >= n) continue;
       std::vector<T> x(n);
       for (std::size_t j = 0; j < n; ++j)
-        x[j] = static_cast<T>(std::cos(std::numbers::pi * static_cast<double>(half_turns * (2 * j + 1) % (4 * n)) / static_cast<double>(2 * n)));
+        x[j] = static_cast<T>(
+            std::cos(std::numbers::pi * static_cast<double>(half_turns * (2 * j + 1) % (4 * n)) / static_cast<double>(2 * n)));
       const std::vector<T> y = rosin::low_pass<T>(x, rate_Hz, limits);
       const T gain = static_cast<T>(limits(rate_Hz / 2 * static_cast<double>(half_turns) / static_cast<double>(n)));
       T worst = 0;
@@ -44,10 +45,12 @@ TEST_CASE("inside a record it is the sum with the window's response in time") {
   std::vector<double> response(reach + 1);
   for (int lag = 0; lag <= reach; ++lag)
     for (int k = -grid / 2; k < grid / 2; ++k)
-      response[static_cast<std::size_t>(lag)] += limits(rate_Hz * k / grid) * std::cos(2 * std::numbers::pi * lag * k / grid) / grid;
+      response[static_cast<std::size_t>(lag)] +=
+          limits(rate_Hz * k / grid) * std::cos(2 * std::numbers::pi * lag * k / grid) / grid;
   for (int n = reach; n + reach < 600; ++n) {
     double sum = 0;
-    for (int lag = -reach; lag <= reach; ++lag) sum += response[static_cast<std::size_t>(std::abs(lag))] * x[static_cast<std::size_t>(n - lag)];
+    for (int lag = -reach; lag <= reach; ++lag)
+      sum += response[static_cast<std::size_t>(std::abs(lag))] * x[static_cast<std::size_t>(n - lag)];
     CHECK(std::abs(y[static_cast<std::size_t>(n)] - sum) < 1e-6);
   }
 }

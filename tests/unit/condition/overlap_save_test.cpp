@@ -27,19 +27,22 @@ std::vector<kernel> kernels_for(std::size_t inputs, std::size_t outputs) {
   std::vector<kernel> kernels;
   for (std::size_t i = 0; i < inputs * outputs; ++i) {
     const int number = static_cast<int>(i);
-    kernels.push_back({(number % 3 - 1) * 20 - number, laws::noise<double>(i == 1 ? 0 : 7 + 5 * i, 100 + static_cast<unsigned>(i))});
+    kernels.push_back(
+        {(number % 3 - 1) * 20 - number, laws::noise<double>(i == 1 ? 0 : 7 + 5 * i, 100 + static_cast<unsigned>(i))});
   }
   return kernels;
 }
 
 template <class T>
-double by_definition(const std::vector<kernel>& kernels, const std::vector<std::vector<T>>& in, std::size_t output, std::size_t n) {
+double by_definition(const std::vector<kernel>& kernels, const std::vector<std::vector<T>>& in, std::size_t output,
+                     std::size_t n) {
   double sum = 0;
   for (std::size_t m = 0; m < in.size(); ++m) {
     const kernel& h = kernels[output * in.size() + m];
     for (std::size_t j = 0; j < h.taps.size(); ++j) {
       const auto at = static_cast<std::int64_t>(n) - h.first - static_cast<std::int64_t>(j);
-      if (at >= 0 && at < static_cast<std::int64_t>(in[m].size())) sum += h.taps[j] * static_cast<double>(in[m][static_cast<std::size_t>(at)]);
+      if (at >= 0 && at < static_cast<std::int64_t>(in[m].size()))
+        sum += h.taps[j] * static_cast<double>(in[m][static_cast<std::size_t>(at)]);
     }
   }
   return sum;
@@ -67,7 +70,8 @@ void is_the_direct_sum(std::size_t inputs, std::size_t outputs, std::size_t leng
   const std::vector<std::vector<T>> out = run<T>(convolver, in);
   double worst = 0;
   for (std::size_t p = 0; p < outputs; ++p)
-    for (std::size_t n = 0; n < length; ++n) worst = std::max(worst, std::abs(static_cast<double>(out[p][n]) - by_definition(kernels, in, p, n)));
+    for (std::size_t n = 0; n < length; ++n)
+      worst = std::max(worst, std::abs(static_cast<double>(out[p][n]) - by_definition(kernels, in, p, n)));
   CHECK(worst < 100 * static_cast<double>(std::numeric_limits<T>::epsilon()));
 }
 
@@ -94,7 +98,8 @@ TEST_CASE("kernels may lie far from lag zero, beyond the record even") {
     const std::vector<std::vector<double>> in{laws::noise<double>(4001, 2)};
     const std::vector<std::vector<double>> out = run<double>(convolver, in);
     double worst = 0;
-    for (std::size_t n = 0; n < in[0].size(); ++n) worst = std::max(worst, std::abs(out[0][n] - by_definition(shifted, in, 0, n)));
+    for (std::size_t n = 0; n < in[0].size(); ++n)
+      worst = std::max(worst, std::abs(out[0][n] - by_definition(shifted, in, 0, n)));
     CHECK(worst < 1e-14);
     const rosin::sample_range valid = convolver.valid(4001);
     CHECK(valid.begin <= valid.end);
@@ -106,7 +111,8 @@ TEST_CASE("a plan is used again for records of other lengths") {
   const std::vector<kernel> kernels = kernels_for(2, 2);
   rosin::block_convolver<double> convolver(2, kernels);
   const std::vector<std::vector<double>> longer{laws::noise<double>(9000, 1), laws::noise<double>(9000, 2)};
-  const std::vector<std::vector<double>> shorter{{longer[0].begin(), longer[0].begin() + 700}, {longer[1].begin(), longer[1].begin() + 700}};
+  const std::vector<std::vector<double>> shorter{{longer[0].begin(), longer[0].begin() + 700},
+                                                 {longer[1].begin(), longer[1].begin() + 700}};
   const auto before = run<double>(convolver, shorter);
   run<double>(convolver, longer);
   CHECK(run<double>(convolver, shorter) == before);

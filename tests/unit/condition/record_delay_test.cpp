@@ -37,7 +37,8 @@ double worst_error_dB(double delay, const rosin::delay_limits& limits = {}) {
   const rosin::sample_range valid = made->valid(n);
   CHECK(valid.end - valid.begin + made->taps() + static_cast<std::size_t>(std::abs(delay)) >= n);
   double worst = 0;
-  for (std::size_t j = valid.begin; j < valid.end; ++j) worst = std::max(worst, static_cast<double>(std::abs(out[j] - should[j])));
+  for (std::size_t j = valid.begin; j < valid.end; ++j)
+    worst = std::max(worst, static_cast<double>(std::abs(out[j] - should[j])));
   return 20 * std::log10(worst);
 }
 

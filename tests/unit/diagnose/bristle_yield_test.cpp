@@ -7,8 +7,8 @@ TEST_CASE("bristle yield: by what the surface moves faster than they bend") {
   using rosin::bristle_yield;
   CHECK(bristle_yield{}.faster(0.3, 0.4, 0.01) == 1);  // nothing known of a limit: they only bend
   const bristle_yield at_once{.limit = 1};
-  CHECK(at_once.faster(0.2, 0.4, 0.01) == doctest::Approx(2));        // half of the limit: half of the motion is flow
-  CHECK(at_once.faster(0.2, 0.4, -0.01) == doctest::Approx(1 / 1.5)); // the other way flow goes along with the spring
+  CHECK(at_once.faster(0.2, 0.4, 0.01) == doctest::Approx(2));         // half of the limit: half of the motion is flow
+  CHECK(at_once.faster(0.2, 0.4, -0.01) == doctest::Approx(1 / 1.5));  // the other way flow goes along with the spring
   CHECK(at_once.faster(10, 0.4, 0.01) == doctest::Approx(5));
   const bristle_yield later{.limit = 1, .elastic = 0.5};
   CHECK(later.faster(0.19, 0.4, 0.01) == 1);

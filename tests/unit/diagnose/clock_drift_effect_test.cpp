@@ -20,7 +20,8 @@ TEST_CASE("clock drift: a record is read at the instants of another clock") {
       const auto y = rosin::resampled(x, stretch);
       REQUIRE(y.size() == x.size());
       double worst = 0;
-      for (std::size_t i = 100; i + 100 < x.size(); ++i) worst = std::max(worst, std::abs(y[i] - tone(static_cast<double>(i) * (1 + stretch), share)));
+      for (std::size_t i = 100; i + 100 < x.size(); ++i)
+        worst = std::max(worst, std::abs(y[i] - tone(static_cast<double>(i) * (1 + stretch), share)));
       CHECK(worst < 2e-5);
     }
 }
@@ -38,7 +39,8 @@ TEST_CASE("clock drift: only the far channel is put right, take by take") {
   }
   e.undo(takes, {}, {}, {}, drift);
   for (const auto& take : takes)
-    for (std::size_t i = 50; i < 2950; ++i) CHECK(take.force_N[1][i] == doctest::Approx(take.force_N[0][i]).epsilon(1e-4).scale(0.1));
+    for (std::size_t i = 50; i < 2950; ++i)
+      CHECK(take.force_N[1][i] == doctest::Approx(take.force_N[0][i]).epsilon(1e-4).scale(0.1));
 }
 
 TEST_CASE("clock drift: an empty record stays empty, a short one finite") {

@@ -49,7 +49,8 @@ TEST_CASE("contact as one: nothing where no width is known, or the ends' forces 
   CHECK_FALSE(rosin::as_one_contact({take}, model));
 }
 
-TEST_CASE("contact as one: beside a width a ripple of the speed is found, and nothing where there is none") {
+TEST_CASE("contact as one: beside a width a ripple of the speed is found, and nothing where there is none" *
+          doctest::test_suite("long")) {
   for (const double ripple : {0.0, 0.03}) {
     CAPTURE(ripple);
     const auto strokes = wide_strokes(ripple);

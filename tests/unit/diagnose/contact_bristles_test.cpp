@@ -31,7 +31,7 @@ struct bristly {
 
 }  // namespace
 
-TEST_CASE("contact bristles: their stiffness, and that they let go bit by bit") {
+TEST_CASE("contact bristles: their stiffness, and that they let go bit by bit" * doctest::test_suite("long")) {
   for (const double stiffness : {1.5e4, 3e4}) {
     const bristly strokes(stiffness);
     rosin::stick_bench bench(strokes.takes(), contact_rigs::declared());
@@ -62,7 +62,8 @@ TEST_CASE("contact bristles: sensors ten times as noisy do not make them stiffer
 }
 
 TEST_CASE("contact bristles: of a law without bristles they are not claimed") {
-  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 31), b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 33);
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 31),
+             b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 33);
   const std::vector<rosin::contact_take> takes{a.take(), b.take()};
   rosin::stick_bench bench(takes, contact_rigs::declared());
   REQUIRE(bench.usable());

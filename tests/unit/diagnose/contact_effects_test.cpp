@@ -6,7 +6,8 @@
 #include "contact_rigs.hpp"
 
 TEST_CASE("contact effects: a contact as declared is called so") {
-  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 91), b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 93);
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 91),
+             b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 93);
   const auto found = rosin::contact_hypotheses({a.take(), b.take()}, contact_rigs::declared());
   CHECK(found.as_declared);
   CHECK(rosin::beyond_doubt(found).empty());
@@ -32,7 +33,8 @@ TEST_CASE("contact effects: torsion that nobody declared comes first, and is all
 TEST_CASE("contact effects: torsion that the catalogue does not know shows all the same") {
   const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 95);
   rosin::contact_model ignorant;
-  ignorant.included = {"torsion", "rod-resonance", "elasto-plastic-friction", "creep", "speed-ripple", "finite-contact-width", "normal-force-ripple", "thermal-friction"};
+  ignorant.included = {"torsion",      "rod-resonance",        "elasto-plastic-friction", "creep",
+                       "speed-ripple", "finite-contact-width", "normal-force-ripple",     "thermal-friction"};
   const auto found = rosin::contact_hypotheses({a.take()}, ignorant);
   CHECK(found.hypotheses.empty());
   CHECK(found.as_declared);

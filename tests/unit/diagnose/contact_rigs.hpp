@@ -18,7 +18,8 @@
 namespace contact_rigs {
 
 constexpr double rate = 128e3;
-const rosin::string_parameters e_string{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
+const rosin::string_parameters e_string{
+    .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
 const rosin::modal_torsion rolls{7, 3.5, 15};
 
 struct stroke {
@@ -31,7 +32,8 @@ struct stroke {
     t.name = "bow";
     t.force_N = force, t.velocity_m_s = velocity, t.velocity_near_m_s = velocity_near, t.velocity_far_m_s = velocity_far;
     t.near_N = near, t.far_N = far, t.rate_Hz = rate, t.rod_speed_m_s = speed, t.normal_force_N = normal;
-    t.delay_s = at.delay_s, t.stiffness_s2 = at.stiffness_s2, t.inverse_q = 1e-3, t.impedance_Ns_m = at.impedance_Ns_m, t.length_m = e_string.length_m;
+    t.delay_s = at.delay_s, t.stiffness_s2 = at.stiffness_s2, t.inverse_q = 1e-3, t.impedance_Ns_m = at.impedance_Ns_m,
+    t.length_m = e_string.length_m;
     t.force_sd_N = 4 * noise / 3, t.velocity_sd_m_s = 5 * noise, t.noise_N = {noise, noise}, t.edge_Hz = 57600, t.start_s = 0.02;
     return t;
   }
@@ -74,26 +76,30 @@ struct springy_rod {
 };
 
 template <class Law>
-[[nodiscard]] stroke play(const Law& law, const rippled_rod& rod, const rosin::modal_torsion& torsion, std::uint64_t seed, double position = 0.27, double duration_s = 0.1, double noise_N = 0.3e-3,
-                          double width_m = 0) {
+[[nodiscard]] stroke play(const Law& law, const rippled_rod& rod, const rosin::modal_torsion& torsion, std::uint64_t seed,
+                          double position = 0.27, double duration_s = 0.1, double noise_N = 0.3e-3, double width_m = 0) {
   stroke r;
   const rosin::modal_rig rig{.string = e_string, .torsion = torsion};
   const rosin::modal_stroke how{.position = position, .duration_s = duration_s};
-  const auto take = width_m > 0 ? rosin::simulate_stroke(rig, rosin::rig_burden{.contact_width_m = width_m}, law, rod, how, {.oversampling = 4})
-                                : rosin::simulate_stroke(rig, law, rod, how, {.oversampling = 4});
+  const auto take =
+      width_m > 0 ? rosin::simulate_stroke(rig, rosin::rig_burden{.contact_width_m = width_m}, law, rod, how, {.oversampling = 4})
+                  : rosin::simulate_stroke(rig, law, rod, how, {.oversampling = 4});
   if (!take) return r;
   const rosin::converter sensor{.gain = 1, .newtons_per_full_scale = 2, .noise_N = noise_N, .bits = 16};
   r.near = rosin::convert(take->force_near_N, rate, sensor, seed).newtons();
   r.far = rosin::convert(take->force_far_N, rate, sensor, seed + 1).newtons();
   rosin::reconstructor<double> reconstruct(rosin::contact_at(e_string, position), {38400, 57600}, rate, 1e-5);
   const auto motion = reconstruct(r.near, r.far);
-  for (std::size_t i = 0; i < take->size(); ++i) r.force.push_back(motion.force_N(i)), r.velocity.push_back(motion.velocity_m_s(i));
+  for (std::size_t i = 0; i < take->size(); ++i)
+    r.force.push_back(motion.force_N(i)), r.velocity.push_back(motion.velocity_m_s(i));
   r.velocity_near = motion.velocity_near_m_s, r.velocity_far = motion.velocity_far_m_s;
   r.speed = rod.steady.speed_m_s, r.normal = rod.steady.normal_force_N, r.position = position, r.noise = noise_N;
   return r;
 }
 
-inline rosin::velocity_curve<rosin::two_exponential_curve<>> curve() { return rosin::velocity_curve<rosin::two_exponential_curve<>>{}; }
+inline rosin::velocity_curve<rosin::two_exponential_curve<>> curve() {
+  return rosin::velocity_curve<rosin::two_exponential_curve<>>{};
+}
 
 inline rippled_rod slow() { return {{.speed_m_s = 0.16, .normal_force_N = 0.3, .start_s = 0.002, .rise_s = 0.005}}; }
 inline rippled_rod fast() { return {{.speed_m_s = 0.22, .normal_force_N = 0.4, .start_s = 0.002, .rise_s = 0.005}}; }

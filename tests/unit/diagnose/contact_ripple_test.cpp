@@ -19,7 +19,8 @@ rosin::tone_rows patches(double size, double f, double noise, unsigned seed) {
   for (std::size_t i = 0; i < 10000; ++i) {
     if (i % 100 >= 30) continue;
     r.sample.push_back(i);
-    residual.push_back(2 * size * std::sin(2 * std::numbers::pi * f * static_cast<double>(i) / r.rate_Hz + 1) + noise * normal(source));
+    residual.push_back(2 * size * std::sin(2 * std::numbers::pi * f * static_cast<double>(i) / r.rate_Hz + 1) +
+                       noise * normal(source));
   }
   const auto n = static_cast<Eigen::Index>(residual.size());
   r.residual = Eigen::Map<Eigen::VectorXd>(residual.data(), n);
@@ -51,7 +52,8 @@ TEST_CASE("ripple: a rod whose speed is not steady") {
   auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
   slow.speed_Hz = fast.speed_Hz = 143;
   slow.speed_relative = fast.speed_relative = 0.02;
-  const auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 41), b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 43);
+  const auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 41),
+             b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 43);
   rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
   REQUIRE(bench.usable());
   const auto h = rosin::speed_ripple_hypothesis(bench);

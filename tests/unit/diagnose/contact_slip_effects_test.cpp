@@ -10,7 +10,8 @@ TEST_CASE("contact slip effects: a normal force that is not steady shows in slip
   auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
   slow.normal_Hz = fast.normal_Hz = 118;
   slow.normal_relative = fast.normal_relative = 0.08;
-  const auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 51), b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 53);
+  const auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 51),
+             b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 53);
   const std::vector<rosin::contact_take> takes{a.take(), b.take()};
   rosin::stick_bench sticks(takes, contact_rigs::declared());
   const rosin::slip_bench bench(sticks, takes);
@@ -29,11 +30,14 @@ TEST_CASE("contact slip effects: a normal force that is not steady shows in slip
   CHECK(rest.declared().residual() < 0.5 * bench.declared().residual());
 }
 
-TEST_CASE("contact slip effects: where sensors lost the mean force, strokes may be off by a constant, and a ripple's size holds that doubt") {
+TEST_CASE(
+    "contact slip effects: where sensors lost the mean force, strokes may be off by a constant, and a ripple's size holds that "
+    "doubt") {
   auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
   slow.normal_Hz = fast.normal_Hz = 118;
   slow.normal_relative = fast.normal_relative = 0.08;
-  auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 51), b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 53);
+  auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 51),
+       b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 53);
   double level_N = 0.1;
   for (auto* s : {&a, &b}) {
     for (double& f : s->force) f -= level_N;
@@ -62,7 +66,10 @@ TEST_CASE("contact slip effects: where sensors lost the mean force, strokes may 
   CHECK(level.second < lost.second);
 }
 
-TEST_CASE("contact slip effects: heat under a normal force that ripples is told only with the ripple taken out, and the ripple's size with the heat in") {
+TEST_CASE(
+    "contact slip effects: heat under a normal force that ripples is told only with the ripple taken out, and the ripple's size "
+    "with the heat in" *
+    doctest::test_suite("long")) {
   const rosin::contact_heat_parameters<double> heat{.layer_m = 3e-6, .area_per_newton_m2 = 1e-7};
   const auto strength = rosin::design_yield_curve(rosin::two_exponential_curve<>{}, heat.without_string(), 0.3);
   REQUIRE(strength);
@@ -70,7 +77,8 @@ TEST_CASE("contact slip effects: heat under a normal force that ripples is told 
   auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
   slow.normal_Hz = fast.normal_Hz = 118;
   slow.normal_relative = fast.normal_relative = 0.2;
-  const auto a = contact_rigs::play(law, slow, contact_rigs::rolls, 81), b = contact_rigs::play(law, fast, contact_rigs::rolls, 83);
+  const auto a = contact_rigs::play(law, slow, contact_rigs::rolls, 81),
+             b = contact_rigs::play(law, fast, contact_rigs::rolls, 83);
   const std::vector<rosin::contact_take> takes{a.take(), b.take()};
   rosin::stick_bench sticks(takes, contact_rigs::declared());
   const rosin::slip_bench ignorant(sticks, takes);
@@ -88,7 +96,8 @@ TEST_CASE("contact slip effects: heat under a normal force that ripples is told 
 }
 
 TEST_CASE("contact slip effects: a velocity curve as declared gains by nothing") {
-  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 61), b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 63);
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 61),
+             b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 63);
   const std::vector<rosin::contact_take> takes{a.take(), b.take()};
   rosin::stick_bench sticks(takes, contact_rigs::declared());
   const rosin::slip_bench bench(sticks, takes);

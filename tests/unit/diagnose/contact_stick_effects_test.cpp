@@ -20,7 +20,8 @@ double value(const rosin::contact_hypothesis& h, const char* name) {
 
 TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q and mass") {
   const contact_rigs::springy_rod<decltype(contact_rigs::curve())> law{contact_rigs::curve(), 1800, 14, 0.003};
-  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 11), b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 13);
+  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 11),
+             b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 13);
   rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
   REQUIRE(bench.usable());
   bench.use_damping(rosin::torsion_damping::viscous_modes);
@@ -31,7 +32,8 @@ TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q an
   CHECK(value(rod, "frequency_Hz") == doctest::Approx(1800).epsilon(0.01));
   CHECK(value(rod, "q") == doctest::Approx(14).epsilon(0.12));
   CHECK(value(rod, "mass_kg") == doctest::Approx(0.003).epsilon(0.06));
-  for (const auto& other : {rosin::torsion_hypothesis(bench), rosin::bristle_hypothesis(bench), rosin::creep_hypothesis(bench, {a.take(), b.take()})})
+  for (const auto& other :
+       {rosin::torsion_hypothesis(bench), rosin::bristle_hypothesis(bench), rosin::creep_hypothesis(bench, {a.take(), b.take()})})
     CHECK(other.density < 0.3 * rod.density);
 }
 
@@ -39,7 +41,8 @@ TEST_CASE("contact stick effects: creep, with its speed and how sharply it grows
   constexpr double limit_m_s = 0.02, sharp = 0.3;
   const rosin::two_exponential_curve<double> curve{};
   const rosin::creep<rosin::two_exponential_curve<double>> law{curve, {limit_m_s, sharp}};
-  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 11), b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 13);
+  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 11),
+             b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 13);
   rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
   REQUIRE(bench.usable());
   bench.use_damping(rosin::torsion_damping::viscous_modes);
@@ -47,15 +50,19 @@ TEST_CASE("contact stick effects: creep, with its speed and how sharply it grows
   CHECK(creep.gain > 1000);
   CHECK(creep.held_out_gain > 1000);
   CHECK(value(creep, "sharpness") == doctest::Approx(sharp).epsilon(0.1));
-  CHECK(value(creep, "speed_at_normal_force_m_s") == doctest::Approx(limit_m_s * std::exp((1 - curve(0).value) / sharp)).epsilon(0.2));
-  for (const auto& other : {rosin::torsion_hypothesis(bench), rosin::rod_hypothesis(bench), rosin::bristle_hypothesis(bench)}) CHECK(other.gain < 0.5 * creep.gain);
+  CHECK(value(creep, "speed_at_normal_force_m_s") ==
+        doctest::Approx(limit_m_s * std::exp((1 - curve(0).value) / sharp)).epsilon(0.2));
+  for (const auto& other : {rosin::torsion_hypothesis(bench), rosin::rod_hypothesis(bench), rosin::bristle_hypothesis(bench)})
+    CHECK(other.gain < 0.5 * creep.gain);
 }
 
 TEST_CASE("contact stick effects: a contact as declared gains by nothing") {
-  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 31), b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 33);
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 31),
+             b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 33);
   const std::vector<rosin::contact_take> takes{a.take(), b.take()};
   rosin::stick_bench bench(takes, contact_rigs::declared());
   REQUIRE(bench.usable());
-  for (const auto& h : {rosin::torsion_hypothesis(bench), rosin::rod_hypothesis(bench), rosin::bristle_hypothesis(bench), rosin::creep_hypothesis(bench, takes)})
+  for (const auto& h : {rosin::torsion_hypothesis(bench), rosin::rod_hypothesis(bench), rosin::bristle_hypothesis(bench),
+                        rosin::creep_hypothesis(bench, takes)})
     CHECK((!h.decided || h.gain < 40));
 }

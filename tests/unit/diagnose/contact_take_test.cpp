@@ -4,13 +4,15 @@
 #include <doctest/doctest.h>
 
 TEST_CASE("contact take: what was found becomes part of the model") {
-  rosin::contact_hypothesis rod{.effect = "rod-resonance", .parameters = {{"frequency_Hz", 1500, 1}, {"q", 17, 1}, {"mass_kg", 0.002, 1e-4}}};
+  rosin::contact_hypothesis rod{.effect = "rod-resonance",
+                                .parameters = {{"frequency_Hz", 1500, 1}, {"q", 17, 1}, {"mass_kg", 0.002, 1e-4}}};
   const auto with_rod = rosin::include({}, rod);
   REQUIRE(with_rod.rod);
   CHECK((*with_rod.rod)[0] == 1500);
   CHECK((*with_rod.rod)[2] == 0.002);
   CHECK(with_rod.included == std::vector<std::string>{"rod-resonance"});
-  rosin::contact_hypothesis torsion{.effect = "torsion", .parameters = {{"speed_ratio", 6.7, 0.01}, {"impedance_ratio", 4.1, 0.1}, {"q", 43, 1}}};
+  rosin::contact_hypothesis torsion{.effect = "torsion",
+                                    .parameters = {{"speed_ratio", 6.7, 0.01}, {"impedance_ratio", 4.1, 0.1}, {"q", 43, 1}}};
   const auto both = rosin::include(with_rod, torsion);
   REQUIRE(both.torsion);
   CHECK(both.torsion->q == 43);

@@ -15,21 +15,29 @@ constexpr double take_rate_Hz = 128e3;
 /// Twelve harmonics of a bowed string, none of them near the record's ends' step.
 double harmonic_force(double t, std::size_t c) {
   double sum = 0;
-  for (int n = 1; n <= 12; ++n) sum += 0.2 / n * std::cos(2 * std::numbers::pi * 660 * n * t + static_cast<double>(c) + 0.3 * n * n);
+  for (int n = 1; n <= 12; ++n)
+    sum += 0.2 / n * std::cos(2 * std::numbers::pi * 660 * n * t + static_cast<double>(c) + 0.3 * n * n);
   return sum;
 }
 
 }  // namespace
 
 TEST_CASE("a resonance, a skew, crosstalk and hum are taken out of a stroke") {
-  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = take_rate_Hz, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::string_facts facts{.fundamental_Hz = 659.69,
+                                  .rate_Hz = take_rate_Hz,
+                                  .highest_Hz = 53e3,
+                                  .impedance_Ns_m = 0.175,
+                                  .length_m = 0.314,
+                                  .takes = 2};
   const auto layout = test::two_plucks({});
   const rosin::scene_data data{{}, {}, {}, layout};
   rosin::scene_fit fit;
-  fit.effects = {rosin::sensor_resonance_effect(facts, 0), rosin::skew_effect(facts), rosin::crosstalk_effect(facts), rosin::hum_effect(facts, 50)};
+  fit.effects = {rosin::sensor_resonance_effect(facts, 0), rosin::skew_effect(facts), rosin::crosstalk_effect(facts),
+                 rosin::hum_effect(facts, 50)};
   fit.value = test::values_of(layout, std::vector<double>(4 + fit.effects[3].parameters.size(), 0.0));
   const Eigen::Index at = layout.size();
-  fit.value[at] = std::log(15e3), fit.value[at + 1] = std::log(9.0), fit.value[at + 2] = 2e-6, fit.value[at + 3] = 0.03, fit.value[at + 4] = std::log(50.0);
+  fit.value[at] = std::log(15e3), fit.value[at + 1] = std::log(9.0), fit.value[at + 2] = 2e-6, fit.value[at + 3] = 0.03,
+  fit.value[at + 4] = std::log(50.0);
 
   const rosin::sensor_response near{.resonance_Hz = 15e3, .q = 9}, far{.delay_s = 2e-6};
   std::array<std::vector<double>, 2> seen{std::vector<double>(20000), std::vector<double>(20000)};
@@ -49,7 +57,8 @@ TEST_CASE("a resonance, a skew, crosstalk and hum are taken out of a stroke") {
   rosin::undo_sensors(data, fit, seen, take_rate_Hz, 40e3);
   double worst = 0;
   for (std::size_t i = 3000; i < 17000; ++i)
-    for (std::size_t c = 0; c < 2; ++c) worst = std::max(worst, std::abs(seen[c][i] - harmonic_force(static_cast<double>(i) / take_rate_Hz, c)));
+    for (std::size_t c = 0; c < 2; ++c)
+      worst = std::max(worst, std::abs(seen[c][i] - harmonic_force(static_cast<double>(i) / take_rate_Hz, c)));
   CHECK(worst < 2e-3);  // what the record's ends and the hum's fit leave of 0.6 N
   CHECK(rosin::string_is_plain({}, fit.effects));
   CHECK_FALSE(rosin::string_is_plain({}, {rosin::point_mass_effect(facts)}));

@@ -21,13 +21,14 @@ struct fading_heat {
 std::vector<rosin::slip_record> by_hand(bool thermal) {
   std::vector<rosin::slip_record> records;
   for (const double strength : {1.0, 1.4})
-    records.push_back(thermal ? rosin_test::slips_by_hand(strength, 20000, 0.4, fading_heat{}) : rosin_test::slips_by_hand(strength, 20000, 0.4, rosin_test::curve_by_hand{}));
+    records.push_back(thermal ? rosin_test::slips_by_hand(strength, 20000, 0.4, fading_heat{})
+                              : rosin_test::slips_by_hand(strength, 20000, 0.4, rosin_test::curve_by_hand{}));
   return records;
 }
 
 }  // namespace
 
-TEST_CASE("friction laws: the law that made the force explains it, on takes it has not seen too") {
+TEST_CASE("friction laws: the law that made the force explains it, on takes it has not seen too" * doctest::test_suite("long")) {
   for (const bool thermal : {false, true}) {
     const auto records = by_hand(thermal);
     const auto curve = rosin::fit_velocity_curve(records, 1e-4), heat = rosin::fit_thermal(records, 1e-4);
@@ -49,7 +50,8 @@ TEST_CASE("friction laws: thermal friction of a simulated stroke, reconstructed"
   const auto strength = rosin::design_yield_curve(steady, heat.without_string(), 0.3);
   REQUIRE(strength);
   const rosin::thermal_plastic<double> law{*strength, heat};
-  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 71), b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 73);
+  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 71),
+             b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 73);
   const std::vector<rosin::contact_take> takes{a.take(), b.take()};
   rosin::stick_bench sticks(takes, contact_rigs::declared());
   const auto records = rosin::slip_records(sticks, takes);

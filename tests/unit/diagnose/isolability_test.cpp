@@ -22,7 +22,8 @@ rosin::planned_plucks plan(double seconds) {
 // An independent Fisher analysis: a 1 N pluck at 0.3 of a violin's E string, 1 mN noise; nuisances projected out.
 TEST_CASE("what a pluck can tell apart is what another Fisher analysis says, and so is what it takes to be seen") {
   const rosin::string_facts facts{660, 128000, 54e3, 0.175, 0.314, 1};
-  const std::vector<rosin::pluck_effect> effects{rosin::slow_release_effect(facts), rosin::pluck_width_effect(facts), rosin::skew_effect(facts), rosin::crosstalk_effect(facts),
+  const std::vector<rosin::pluck_effect> effects{rosin::slow_release_effect(facts), rosin::pluck_width_effect(facts),
+                                                 rosin::skew_effect(facts), rosin::crosstalk_effect(facts),
                                                  rosin::point_mass_effect(facts)};
   const auto long_look = rosin::isolability_of(plan(0.064), effects);
   CHECK(long_look.ids[0] == "slow-release");
@@ -44,12 +45,14 @@ TEST_CASE("what shrinks with a parameter, though not in proportion, is followed 
   const rosin::pluck_effect damped = rosin::resistive_end_effect(facts, 0);
   rosin::pluck_effect in_proportion = damped;
   in_proportion.strength = 0, in_proportion.parameters[0].logarithmic = false, in_proportion.starts = {{1e-5 / 0.175, 66, 0}};
-  const auto seen = rosin::isolability_of(plan(0.032), {damped, in_proportion, rosin::slow_release_effect(facts), rosin::ac_coupling_effect(facts)});
+  const auto seen = rosin::isolability_of(
+      plan(0.032), {damped, in_proportion, rosin::slow_release_effect(facts), rosin::ac_coupling_effect(facts)});
   CHECK(seen.strength[0] == "conductance_m_sN");
   CHECK(seen.detectable[0] == doctest::Approx(seen.detectable[1]).epsilon(0.1));
   auto noisy = plan(0.032);
   noisy.noise_N *= 4;
-  const auto hardly = rosin::isolability_of(noisy, {damped, in_proportion, rosin::slow_release_effect(facts), rosin::ac_coupling_effect(facts)});
+  const auto hardly =
+      rosin::isolability_of(noisy, {damped, in_proportion, rosin::slow_release_effect(facts), rosin::ac_coupling_effect(facts)});
   CHECK(hardly.detectable[0] / seen.detectable[0] == doctest::Approx(4).epsilon(0.1));
   CHECK(hardly.detectable[2] / seen.detectable[2] < 3);  // what a wire that lets go slowly makes goes as a power of its time
   CHECK(hardly.detectable[3] > seen.detectable[3]);
@@ -63,7 +66,9 @@ TEST_CASE("at its threshold every effect changes the recordings by five standard
   const auto pluck = plan(0.032);
   const rosin::detail::planned_recordings recordings(pluck);
   const Eigen::MatrixXd nuisances = recordings.nuisances();
-  for (auto e : {rosin::clamped_end_effect(facts, 0), rosin::internal_loss_effect(facts), rosin::support_resonance_effect(facts, 0), rosin::sympathetic_string_effect(facts, 1), rosin::ac_coupling_effect(facts)}) {
+  for (auto e :
+       {rosin::clamped_end_effect(facts, 0), rosin::internal_loss_effect(facts), rosin::support_resonance_effect(facts, 0),
+        rosin::sympathetic_string_effect(facts, 1), rosin::ac_coupling_effect(facts)}) {
     CAPTURE(e.id());
     e.starts = rosin::detail::spread_starts(e, 12);
     const double threshold = rosin::isolability_of(pluck, {e}).detectable[0];

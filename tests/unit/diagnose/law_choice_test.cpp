@@ -9,7 +9,8 @@ namespace {
 
 template <class Law>
 rosin::outcome<rosin::law_choice> chosen(const Law& law, std::uint64_t seed) {
-  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, seed), b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, seed + 2);
+  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, seed),
+             b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, seed + 2);
   return rosin::choose_friction_law({a.take(), b.take()}, contact_rigs::declared());
 }
 
@@ -37,7 +38,8 @@ TEST_CASE("law choice: heat is told from strokes that were not fitted") {
 TEST_CASE("law choice: bristles, 60 us to give way, with their stiffness and how it goes with the normal force") {
   const rosin::two_exponential_curve<> steady;
   const double per_newton = steady(0).value / (0.22 * 60e-6);
-  const auto c = chosen(rosin::elasto_plastic<rosin::two_exponential_curve<>>{steady, {.stiffness_1_m = per_newton, .kinetic = steady.c}}, 89);
+  const auto c = chosen(
+      rosin::elasto_plastic<rosin::two_exponential_curve<>>{steady, {.stiffness_1_m = per_newton, .kinetic = steady.c}}, 89);
   REQUIRE(c);
   CHECK(c->law == rosin::contact_law::elasto_plastic);
   CHECK(c->margin > 200);

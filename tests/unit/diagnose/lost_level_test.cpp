@@ -33,7 +33,8 @@ double spoil(rosin::slip_record& r) {
 std::vector<rosin::slip_record> without_their_mean(bool thermal, std::vector<double>& lost) {
   std::vector<rosin::slip_record> records;
   for (const double strength : {1.0, 1.4}) {
-    records.push_back(thermal ? rosin_test::slips_by_hand(strength, 7000, 0.5, lasting_heat{}) : rosin_test::slips_by_hand(strength, 7000, 0.5, rosin_test::curve_by_hand{}));
+    records.push_back(thermal ? rosin_test::slips_by_hand(strength, 7000, 0.5, lasting_heat{})
+                              : rosin_test::slips_by_hand(strength, 7000, 0.5, rosin_test::curve_by_hand{}));
     lost.push_back(spoil(records.back()));
   }
   return records;

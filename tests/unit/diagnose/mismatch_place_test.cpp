@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is put into a stepped modal string acts where the search says; the closed forms that are propagated back had no part in it.
+// What is put into a stepped modal string acts where the search says; the closed forms that are propagated back had no part in
+// it.
 #include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/simulate/burdened_signals.hpp>
 
@@ -12,7 +13,8 @@ namespace {
 /// Recordings with a burden less those without, from just behind the release on.
 rosin::unexplained_part difference(const rosin::rig_burden& burden) {
   const rosin::modal_pluck wire{.position = 0.3, .force_N = 1, .release_s = 0.004, .duration_s = 0.03};
-  const auto with = rosin::simulate_pluck(test::plucked_rig, burden, wire), without = rosin::simulate_pluck(test::plucked_rig, {}, wire);
+  const auto with = rosin::simulate_pluck(test::plucked_rig, burden, wire),
+             without = rosin::simulate_pluck(test::plucked_rig, {}, wire);
   rosin::unexplained_part out{{}, {}, with->sample_rate_Hz};
   const auto from = static_cast<std::size_t>(0.004 * out.rate_Hz) + 40;
   std::mt19937_64 random{7};
@@ -20,7 +22,8 @@ rosin::unexplained_part difference(const rosin::rig_burden& burden) {
   for (std::size_t c = 0; c < 2; ++c) {
     const auto &a = c == 0 ? with->force_near_N : with->force_far_N, &b = c == 0 ? without->force_near_N : without->force_far_N;
     out.force_N[c].resize(static_cast<Eigen::Index>(a.size() - from));
-    for (std::size_t i = from; i < a.size(); ++i) out.force_N[c][static_cast<Eigen::Index>(i - from)] = a[i] - b[i] + noise(random);
+    for (std::size_t i = from; i < a.size(); ++i)
+      out.force_N[c][static_cast<Eigen::Index>(i - from)] = a[i] - b[i] + noise(random);
   }
   return out;
 }
@@ -29,7 +32,8 @@ rosin::acting_place place_of(const rosin::rig_burden& burden) {
   rosin::pluck_scene scene;
   const auto& s = test::plucked_rig.string;
   const double pi = 3.14159265358979323846;
-  scene.string.fundamental_Hz = s.fundamental_Hz, scene.string.inharmonicity = pi * pi * s.bending_stiffness_Nm2 / (s.tension_N * s.length_m * s.length_m);
+  scene.string.fundamental_Hz = s.fundamental_Hz,
+  scene.string.inharmonicity = pi * pi * s.bending_stiffness_Nm2 / (s.tension_N * s.length_m * s.length_m);
   scene.string.loss.quality = 900;
   return rosin::place_search(scene, {1, 1}, {43e3, 54e3}, difference(burden), {1e-4, 1e-4})();
 }

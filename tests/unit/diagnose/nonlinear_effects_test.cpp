@@ -7,7 +7,8 @@
 
 namespace {
 
-const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 1};
+const rosin::string_facts facts{
+    .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 1};
 constexpr rosin::band limits{40e3, 50e3};
 
 }  // namespace
@@ -35,7 +36,8 @@ TEST_CASE("a curved sensor in front of a high-pass is straightened, what the hig
   std::vector<double> force(16384, 0.7);  // held, let go, ringing
   for (std::size_t i = 640; i < force.size(); ++i) {
     const double t = static_cast<double>(i - 640) / 128e3;
-    force[i] = std::exp(-12 * t) * (0.6 * std::cos(2 * std::numbers::pi * 659 * t) + 0.1 * std::cos(2 * std::numbers::pi * 5310 * t));
+    force[i] =
+        std::exp(-12 * t) * (0.6 * std::cos(2 * std::numbers::pi * 659 * t) + 0.1 * std::cos(2 * std::numbers::pi * 5310 * t));
   }
   std::vector<double> straight = force, curved = force;
   for (double& y : curved) y += 0.03 * y * y;
@@ -68,7 +70,8 @@ TEST_CASE("what stretching puts in is taken out: larger with the square of the p
     takes[0].force_N = {std::vector<double>(3000, 0.0), std::vector<double>(3000, 0.0)};
     const rosin::pluck_layout layout(takes, {});
     Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
-    v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002, v[layout.at(0, 1)] = std::log(newtons);
+    v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002,
+    v[layout.at(0, 1)] = std::log(newtons);
     e.undo(takes, {}, layout, v, 1e4);
     double power = 0;
     for (std::size_t i = 300; i < 900; ++i) power += std::pow(takes[0].force_N[0][i], 2);
@@ -84,10 +87,12 @@ TEST_CASE("what a sensor feels of the tension is taken out, before the release a
   takes[0].force_N = {std::vector<double>(3000, 0.0), std::vector<double>(3000, 0.0)};
   const rosin::pluck_layout layout(takes, {});
   Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
-  v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002, v[layout.at(0, 1)] = std::log(0.8);
+  v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002,
+  v[layout.at(0, 1)] = std::log(0.8);
   e.undo(takes, {}, layout, v, 5e3);
   const auto& far = takes[0].force_N[1];
-  const double tension = facts.impedance_Ns_m * 2 * facts.length_m * facts.fundamental_Hz, held = 0.5 * 0.3 * 0.7 * std::pow(0.8 / tension, 2) * 5e3;
+  const double tension = facts.impedance_Ns_m * 2 * facts.length_m * facts.fundamental_Hz,
+               held = 0.5 * 0.3 * 0.7 * std::pow(0.8 / tension, 2) * 5e3;
   CHECK(far[10] == doctest::Approx(-held).epsilon(0.02));
   CHECK(far[257] == doctest::Approx(-held).epsilon(0.05));  // at once after the release
   double least = 0, most = -1;
@@ -103,7 +108,9 @@ TEST_CASE("a sensor that bends before it rings: what it makes of the bend is tak
   std::vector<double> force(count * fine), bent;
   for (std::size_t i = 0; i < force.size(); ++i) {
     const double t = static_cast<double>(i) / (rate * fine) - 0.003;
-    force[i] = t < 0 ? 0.6 : std::exp(-40 * t) * (0.4 * std::cos(2 * std::numbers::pi * 640 * t) + 0.2 * std::cos(2 * std::numbers::pi * 3210 * t));
+    force[i] = t < 0 ? 0.6
+                     : std::exp(-40 * t) *
+                           (0.4 * std::cos(2 * std::numbers::pi * 640 * t) + 0.2 * std::cos(2 * std::numbers::pi * 3210 * t));
   }
   bent = force;
   for (double& f : bent) f += curve * f * f;
@@ -126,7 +133,8 @@ TEST_CASE("a sensor that bends before it rings: what it makes of the bend is tak
     CHECK(takes[0].force_N[0] == straight);
     return std::sqrt(sum);
   };
-  CHECK(rosin::sensor_nonlinearity_effect(facts, 1, rosin::bending::before_ringing).id() == "sensor-nonlinearity@far before it rings");  // the key that `simulate --model` looks for
+  CHECK(rosin::sensor_nonlinearity_effect(facts, 1, rosin::bending::before_ringing).id() ==
+        "sensor-nonlinearity@far before it rings");  // the key that `simulate --model` looks for
   const double as_it_is = left(rosin::bending::before_ringing), other_way = left(rosin::bending::behind_ringing);
   CHECK(as_it_is < 1e-4);
   CHECK(other_way > 5 * as_it_is);
@@ -138,14 +146,16 @@ TEST_CASE("stretching as the channels record it: behind a high-pass, late, leaki
   take.force_N = {std::vector<double>(4000, 0.0), std::vector<double>(4000, 0.0)};
   const rosin::pluck_layout layout({take}, {});
   Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
-  v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002, v[layout.at(0, 1)] = std::log(0.8);
+  v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002,
+  v[layout.at(0, 1)] = std::log(0.8);
   const auto taken_out = [&](const rosin::pluck_scene& scene) {
     std::vector<rosin::pluck_take> takes{take};
     e.undo(takes, scene, layout, v, 1e4);
     return takes[0].force_N;
   };
   rosin::pluck_scene heard;
-  heard.crosstalk = 0.05, heard.sensors[0].corner_Hz = heard.sensors[1].corner_Hz = 20, heard.sensors[1].delay_s = 4e-6, heard.release_duration_s = 40e-6;
+  heard.crosstalk = 0.05, heard.sensors[0].corner_Hz = heard.sensors[1].corner_Hz = 20, heard.sensors[1].delay_s = 4e-6,
+  heard.release_duration_s = 40e-6;
   auto expected = taken_out({});
   rosin::pass_wire(expected, heard, take.rate_Hz);
   rosin::pass_sensors(expected, heard, take.rate_Hz);

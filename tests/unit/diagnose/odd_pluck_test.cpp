@@ -9,7 +9,8 @@
 namespace {
 
 std::optional<rosin::odd_pluck> odd_of(const std::vector<rosin::pluck_take>& takes, const std::vector<rosin::pluck_take>& held) {
-  return rosin::find_odd_pluck(takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [](const rosin::pluck_fit_result&) { return std::vector<rosin::pluck_effect>{}; });
+  return rosin::find_odd_pluck(takes, held, {.fundamental_Hz = 660}, {.internal_loss = false},
+                               [](const rosin::pluck_fit_result&) { return std::vector<rosin::pluck_effect>{}; });
 }
 
 /// Three short plucks, two to fit and one held out.
@@ -49,7 +50,7 @@ TEST_CASE("odd pluck: samples that a recorder lost are found, with their number 
   CHECK(odd->others.best.effects.empty());
 }
 
-TEST_CASE("odd pluck: made elsewhere than declared") {
+TEST_CASE("odd pluck: made elsewhere than declared" * doctest::test_suite("long")) {
   three p = sound_plucks();
   p.takes[1] = test::modal_pluck(0.5, 7, 0, 0.343);
   p.takes[1].name = "moved";

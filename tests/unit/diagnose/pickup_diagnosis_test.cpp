@@ -35,7 +35,8 @@ TEST_CASE("diagnose_pickups: no mismatch where nothing is concealed") {
   CHECK(d.before < 1.2 * d.floor);
 }
 
-TEST_CASE("diagnose_pickups: what is concealed is named, alone, from one pluck, and foretells another") {
+TEST_CASE("diagnose_pickups: what is concealed is named, alone, from one pluck, and foretells another" *
+          doctest::test_suite("long")) {
   rosin_test::heard_string s;
   s.inharmonicity = 1e-4;
   check_named(diagnosed(s), "bending-stiffness", 0, 1e-4, 0.01);

@@ -23,7 +23,8 @@ TEST_CASE("pickup_namer: strays become hum and strings, and evidence adds up") {
   REQUIRE(d.ranking.size() > 2);
   CHECK(d.ranking.front().first.size() == 3);
   CHECK(d.ranking.front().second == 0);
-  const auto stiff = std::find_if(d.ranking.begin(), d.ranking.end(), [](const auto& r) { return r.first == std::vector<std::string>{"bending-stiffness"}; });
+  const auto stiff = std::find_if(d.ranking.begin(), d.ranking.end(),
+                                  [](const auto& r) { return r.first == std::vector<std::string>{"bending-stiffness"}; });
   REQUIRE(stiff != d.ranking.end());
   CHECK(stiff->second == doctest::Approx(3.0 - 820));
 }

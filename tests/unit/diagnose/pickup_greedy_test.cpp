@@ -21,7 +21,8 @@ std::vector<std::string> names_in(const line_table& t, const line_table& held = 
 
 TEST_CASE("search_law: two effects together, one after the other") {
   const pickup_law both{.fundamental_Hz = 200, .inharmonicity = 5e-5, .inverse_q = 1e-3, .internal_s = 4e-7};
-  CHECK(names_in(rosin_test::table_from(both, 14, 0.003, 0.01, 1)) == std::vector<std::string>{"bending-stiffness", "frequency-dependent-loss"});
+  CHECK(names_in(rosin_test::table_from(both, 14, 0.003, 0.01, 1)) ==
+        std::vector<std::string>{"bending-stiffness", "frequency-dependent-loss"});
 }
 
 TEST_CASE("search_law: the scatter of real partials is not named") {
@@ -33,7 +34,8 @@ TEST_CASE("search_law: what is foretold are partials up to those that were fitte
   const pickup_law stiff{.fundamental_Hz = 200, .inharmonicity = 5e-5, .inverse_q = 1e-3};
   const auto table = rosin_test::table_from(stiff, 14, 0.003, 0.01, 1);
   auto held = rosin_test::table_from(stiff, 14, 0.003, 0.01, 2);
-  const auto above = rosin_test::table_from({.fundamental_Hz = 200, .inharmonicity = 5.5e-5, .inverse_q = 1e-3}, 64, 0.003, 0.01, 3);  // which the law gets wrong
+  const auto above = rosin_test::table_from({.fundamental_Hz = 200, .inharmonicity = 5.5e-5, .inverse_q = 1e-3}, 64, 0.003, 0.01,
+                                            3);  // which the law gets wrong
   for (const int n : {45, 53, 56, 60, 64}) held.lines.push_back(above.lines[static_cast<std::size_t>(n - 1)]);
   CHECK(names_in(table, held) == std::vector<std::string>{"bending-stiffness"});
   CHECK(names_in(table, rosin_test::table_from({.fundamental_Hz = 200, .inverse_q = 1e-3}, 14, 0.003, 0.01, 2)).empty());

@@ -8,7 +8,9 @@
 using namespace rosin;
 
 namespace {
-const std::vector<law_parameter> stiff{{"fundamental_Hz", &pickup_law::fundamental_Hz, 100, 400, true}, {"inverse_quality", &pickup_law::inverse_q, 0, 0.2}, {"inharmonicity", &pickup_law::inharmonicity, 0, 0.05}};
+const std::vector<law_parameter> stiff{{"fundamental_Hz", &pickup_law::fundamental_Hz, 100, 400, true},
+                                       {"inverse_quality", &pickup_law::inverse_q, 0, 0.2},
+                                       {"inharmonicity", &pickup_law::inharmonicity, 0, 0.05}};
 }
 
 TEST_CASE("fit_law: intervals of pitch, loss and stiffness cover the truth, with scatter and without") {

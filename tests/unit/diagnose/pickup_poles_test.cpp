@@ -21,7 +21,8 @@ TEST_CASE("pickup_pole: a heavy bead in the middle of a flexible string is known
   const auto s = pickup_pole({.fundamental_Hz = 100, .bead_position = 0.5, .bead_mass = ratio}, 1);
   const double half = pi * s.imag() / (2 * pi * 100) / 2;
   CHECK(1 / std::tan(half) == doctest::Approx(ratio * half).epsilon(1e-9));
-  CHECK(pickup_pole({.fundamental_Hz = 100, .bead_position = 0.5, .bead_mass = ratio}, 2).imag() == doctest::Approx(2 * pi * 200));
+  CHECK(pickup_pole({.fundamental_Hz = 100, .bead_position = 0.5, .bead_mass = ratio}, 2).imag() ==
+        doctest::Approx(2 * pi * 200));
 }
 
 TEST_CASE("pickup_pole: little loads shift as Rayleigh has it, stiff or not") {

@@ -15,7 +15,9 @@ TEST_CASE("left_by_lines: true poles leave the noise, wrong ones more") {
   gaussian_source normal{3};
   for (int j = 0; j < 6000; ++j) {
     const double t = j / 8000.0;
-    stretch.x.push_back(std::real(std::complex{1.0, -0.4} * std::exp(s * t) * std::polar(1.0, s.imag() * 1e-3 * shape.path_s(1, t))) + 0.01 * normal());
+    stretch.x.push_back(
+        std::real(std::complex{1.0, -0.4} * std::exp(s * t) * std::polar(1.0, s.imag() * 1e-3 * shape.path_s(1, t))) +
+        0.01 * normal());
   }
   const auto left = left_by_lines(stretch, {{1, s}}, &glide);
   CHECK(rms_level(left) == doctest::Approx(0.01).epsilon(0.05));

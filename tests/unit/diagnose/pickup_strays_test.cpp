@@ -13,8 +13,8 @@ TEST_CASE("find_strays: hum is steady, another string is not at the mains' multi
   const double turn = 2 * 3.14159265358979323846 / 16000;
   for (std::size_t j = 0; j < x.size(); ++j) {
     const double t = static_cast<double>(j);
-    x[j] = 0.01 * normal() + 0.02 * std::sin(50.03 * turn * t) + 0.01 * std::sin(3 * 50.03 * turn * t) + 0.03 * std::exp(-t / 24000) * std::sin(329.6 * turn * t) +
-           0.05 * std::sin(440 * turn * t);
+    x[j] = 0.01 * normal() + 0.02 * std::sin(50.03 * turn * t) + 0.01 * std::sin(3 * 50.03 * turn * t) +
+           0.03 * std::exp(-t / 24000) * std::sin(329.6 * turn * t) + 0.05 * std::sin(440 * turn * t);
   }
   const auto s = find_strays(x, 16000, {440}, 5, 2000);
   CHECK(s.mains_Hz == doctest::Approx(50.03).epsilon(1e-3));

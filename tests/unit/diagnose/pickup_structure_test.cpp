@@ -17,7 +17,7 @@ structure_hypothesis likeliest(const rosin_test::heard_string& s) {
 
 }  // namespace
 
-TEST_CASE("structures_of: nothing, a glide, a pair, and both") {
+TEST_CASE("structures_of: nothing, a glide, a pair, and both" * doctest::test_suite("long")) {
   rosin_test::heard_string s;
   const auto none = likeliest(s);
   CHECK_FALSE(none.glides);

@@ -6,17 +6,21 @@
 #include <doctest/doctest.h>
 
 TEST_CASE("of several effects the one that is there comes first") {
-  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::string_facts facts{
+      .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
   const rosin::pluck_options options{.internal_loss = false};
   const auto layout = test::two_plucks(options);
   const Eigen::VectorXd truth = test::values_of(layout, {std::log(21e3), std::log(14.0)});
   rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
-  for (std::size_t t = 0; t < 2; ++t) data.takes.push_back(test::scene_pluck(layout, {rosin::sensor_resonance_effect(facts, 0)}, truth, t, 3e-4, 3 + t));
+  for (std::size_t t = 0; t < 2; ++t)
+    data.takes.push_back(test::scene_pluck(layout, {rosin::sensor_resonance_effect(facts, 0)}, truth, t, 3e-4, 3 + t));
   rosin::scene_fit plain;
   plain.value = test::values_of(layout);
   rosin::pluck_effect resonance = rosin::sensor_resonance_effect(facts, 0);
   std::erase_if(resonance.starts, [](const auto& s) { return s[1] != 12; });
-  const auto fits = rosin::one_more_effect(data, plain, {rosin::skew_effect(facts), rosin::crosstalk_effect(facts), resonance, rosin::slow_release_effect(facts)}, false, {1e-3, 1e-3});
+  const auto fits = rosin::one_more_effect(
+      data, plain, {rosin::skew_effect(facts), rosin::crosstalk_effect(facts), resonance, rosin::slow_release_effect(facts)},
+      false, {1e-3, 1e-3});
   REQUIRE(fits.size() > 1);
   CHECK(fits[0].effects[0].id() == "sensor-resonance@near");
   CHECK(std::exp(fits[0].value[layout.size()]) == doctest::Approx(21e3).epsilon(1e-4));
@@ -24,13 +28,15 @@ TEST_CASE("of several effects the one that is there comes first") {
 }
 
 TEST_CASE("an effect that a later one has made needless is given up") {
-  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::string_facts facts{
+      .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
   const rosin::pluck_options options{.internal_loss = false};
   const auto layout = test::two_plucks(options);
   const rosin::pluck_effect late = rosin::skew_effect(facts), cross = rosin::crosstalk_effect(facts);
   constexpr std::array<double, 2> noise{3e-4, 3e-4};
   rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
-  for (std::size_t t = 0; t < 2; ++t) data.takes.push_back(test::scene_pluck(layout, {late}, test::values_of(layout, {2e-6}), t, noise[0], 3 + t));
+  for (std::size_t t = 0; t < 2; ++t)
+    data.takes.push_back(test::scene_pluck(layout, {late}, test::values_of(layout, {2e-6}), t, noise[0], 3 + t));
   const auto both = rosin::fit_scene(data, {cross, late}, test::values_of(layout, {1e-5, 2e-6}), {{}}, noise);
   const auto kept = rosin::exchanged(data, both, {late, cross}, 1, noise);
   REQUIRE(kept.effects.size() == 1);

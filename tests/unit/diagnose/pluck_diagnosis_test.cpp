@@ -11,14 +11,17 @@
 namespace {
 
 rosin::outcome<rosin::pluck_diagnosis> look(const std::vector<rosin::pluck_take>& takes, const rosin::pluck_take& held,
-                                             const std::array<rosin::modal_termination, 2>& ends = {}) {
-  return rosin::diagnose_plucks(takes, {held}, {.fundamental_Hz = 660, .ends = ends}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
-    const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};
-    auto all = rosin::catalogue_without({"bending-stiffness"}, facts, fit.limits);
-    // Scans over frequency and place, and searches for poles, are what takes long; here they are not what is tested.
-    std::erase_if(all, [](const rosin::pluck_effect& e) { return e.starts.size() > 20 || (e.at_end && e.name != "clamped-end") || e.strength < -1; });
-    return all;
-  });
+                                            const std::array<rosin::modal_termination, 2>& ends = {}) {
+  return rosin::diagnose_plucks(
+      takes, {held}, {.fundamental_Hz = 660, .ends = ends}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+        const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};
+        auto all = rosin::catalogue_without({"bending-stiffness"}, facts, fit.limits);
+        // Scans over frequency and place, and searches for poles, are what takes long; here they are not what is tested.
+        std::erase_if(all, [](const rosin::pluck_effect& e) {
+          return e.starts.size() > 20 || (e.at_end && e.name != "clamped-end") || e.strength < -1;
+        });
+        return all;
+      });
 }
 
 }  // namespace
@@ -45,7 +48,10 @@ TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck
   CHECK(d->mismatch.residual_over_noise > 2);
 }
 
-TEST_CASE("an end that swallows what comes, and one that is heavy and softly held: each is found, and what the wire held comes out right") {
+TEST_CASE(
+    "an end that swallows what comes, and one that is heavy and softly held: each is found, and what the wire held comes out "
+    "right" *
+    doctest::test_suite("long")) {
   const auto& rig = test::plucked_rig;
   for (const bool heavy : {false, true}) {
     CAPTURE(heavy);
@@ -53,19 +59,24 @@ TEST_CASE("an end that swallows what comes, and one that is heavy and softly hel
     if (heavy) burden.string.supports[1] = {0.05, 60, 20};
     else burden.string.ends[1].modes = {rosin::overdamped_mode(0.003, 40, 1e6)};
     std::vector<rosin::pluck_take> takes;
-    for (const double force_N : {1.0, 0.5, 0.75}) takes.push_back(test::recorded(*rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.15}), force_N, takes.size()));
+    for (const double force_N : {1.0, 0.5, 0.75})
+      takes.push_back(test::recorded(
+          *rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.15}),
+          force_N, takes.size()));
     const std::vector held{takes.back()};
     takes.pop_back();
-    const auto d = rosin::diagnose_plucks(takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
-      const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, rig.string.impedance_Ns_m(), rig.string.length_m, takes.size()};
-      std::vector<rosin::pluck_effect> all{rosin::air_loss_effect(facts), rosin::crosstalk_effect(facts)};
-      for (const int end : {0, 1}) {
-        all.push_back(rosin::resistive_end_effect(facts, end));
-        all.push_back(rosin::support_resonance_effect(facts, end));
-        std::erase_if(all.back().starts, [](const auto& start) { return !(start[1] == 25 && start[0] < 200); });
-      }
-      return all;
-    });
+    const auto d = rosin::diagnose_plucks(
+        takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+          const rosin::string_facts facts{fit.value[0],        takes[0].rate_Hz, fit.limits.stop_Hz, rig.string.impedance_Ns_m(),
+                                          rig.string.length_m, takes.size()};
+          std::vector<rosin::pluck_effect> all{rosin::air_loss_effect(facts), rosin::crosstalk_effect(facts)};
+          for (const int end : {0, 1}) {
+            all.push_back(rosin::resistive_end_effect(facts, end));
+            all.push_back(rosin::support_resonance_effect(facts, end));
+            std::erase_if(all.back().starts, [](const auto& start) { return !(start[1] == 25 && start[0] < 200); });
+          }
+          return all;
+        });
     REQUIRE_MESSAGE(d, d.error());
     REQUIRE(d->best.effects.size() == 1);
     CHECK(d->best.effects[0].id() == (heavy ? "support-resonance@far" : "resistive-end@far"));
@@ -78,17 +89,20 @@ TEST_CASE("an end that swallows what comes, and one that is heavy and softly hel
   }
 }
 
-TEST_CASE("a stiffness that was not declared is found behind a sensor that rings, and then the sensor") {
+TEST_CASE("a stiffness that was not declared is found behind a sensor that rings, and then the sensor" *
+          doctest::test_suite("long")) {
   const auto layout = test::two_plucks({});
   const rosin::string_facts facts{659.69, 128e3, 60e3, 0.175, 0.314, 2};
   auto ringing = rosin::sensor_resonance_effect(facts, 1);
   std::erase_if(ringing.starts, [](const auto& start) { return start[1] != 12; });
   const Eigen::VectorXd v = test::values_of(layout, {std::log(20966.0), std::log(10.2)});
-  std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, {ringing}, v, 0, 3e-4, 1), test::scene_pluck(layout, {ringing}, v, 1, 3e-4, 2)};
+  std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, {ringing}, v, 0, 3e-4, 1),
+                                       test::scene_pluck(layout, {ringing}, v, 1, 3e-4, 2)};
   takes[1].strength_N = 0.5;
-  const auto d = rosin::diagnose_plucks(takes, {}, {.fundamental_Hz = 660}, {.stiffness = false, .internal_loss = false}, [&](const rosin::pluck_fit_result&) {
-    return std::vector<rosin::pluck_effect>{rosin::bending_stiffness_effect(facts), ringing};
-  });
+  const auto d = rosin::diagnose_plucks(
+      takes, {}, {.fundamental_Hz = 660}, {.stiffness = false, .internal_loss = false}, [&](const rosin::pluck_fit_result&) {
+        return std::vector<rosin::pluck_effect>{rosin::bending_stiffness_effect(facts), ringing};
+      });
   REQUIRE_MESSAGE(d, d.error());
   REQUIRE(d->best.effects.size() == 2);
   CHECK(d->explained);
@@ -96,7 +110,8 @@ TEST_CASE("a stiffness that was not declared is found behind a sensor that rings
   CHECK(d->after < 1.05 * d->floor);
 }
 
-TEST_CASE("a channel that comes a little late is found beside a bead that leaves a hundred thousand times as much") {
+TEST_CASE("a channel that comes a little late is found beside a bead that leaves a hundred thousand times as much" *
+          doctest::test_suite("long")) {
   const auto layout = test::two_plucks({});
   const rosin::string_facts facts{659.69, 128e3, 60e3, 0.175, 0.314, 2};
   auto bead = rosin::point_mass_effect(facts);
@@ -107,11 +122,13 @@ TEST_CASE("a channel that comes a little late is found beside a bead that leaves
   for (std::size_t k = values.size(); k < bead.parameters.size(); ++k) values.push_back(0);
   values.push_back(late_s);
   const Eigen::VectorXd v = test::values_of(layout, values);
-  std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, both, v, 0, 3e-4, 1), test::scene_pluck(layout, both, v, 1, 3e-4, 2)};
+  std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, both, v, 0, 3e-4, 1),
+                                       test::scene_pluck(layout, both, v, 1, 3e-4, 2)};
   takes[1].strength_N = 0.5;
-  const auto d = rosin::diagnose_plucks(takes, {}, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result&) {
-    return std::vector<rosin::pluck_effect>{bead, rosin::skew_effect(facts), rosin::crosstalk_effect(facts)};
-  });
+  const auto d =
+      rosin::diagnose_plucks(takes, {}, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result&) {
+        return std::vector<rosin::pluck_effect>{bead, rosin::skew_effect(facts), rosin::crosstalk_effect(facts)};
+      });
   REQUIRE_MESSAGE(d, d.error());
   REQUIRE(d->best.effects.size() == 2);
   CHECK(d->explained);
@@ -139,14 +156,17 @@ TEST_CASE("a clock that wavers is a mismatch, though nothing of it shows at the 
   CHECK(d->mismatch.residual_over_noise > 3);
 }
 
-TEST_CASE("ends that are known to move are part of the declared model: nothing is missing, or what is besides") {
+TEST_CASE("ends that are known to move are part of the declared model: nothing is missing, or what is besides" *
+          doctest::test_suite("long")) {
   const double impedance = test::plucked_rig.string.impedance_Ns_m();
   rosin::rig_burden burden;
   burden.string.ends[1].modes = {{2400, 12, impedance / 0.01}, {470, 30, impedance / 0.1}};
   auto roughly = burden.string.ends;  // as a measurement may have it
   roughly[1].modes[0].frequency_Hz *= 1.005, roughly[1].modes[0].q *= 0.9, roughly[1].modes[1].per_mass_per_s *= 1.05;
   const auto pluck = [&](double force_N, std::uint64_t seed, double release_duration_s) {
-    const auto made = rosin::simulate_pluck(test::plucked_rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.06});
+    const auto made = rosin::simulate_pluck(
+        test::plucked_rig, burden,
+        {.position = 0.3, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.06});
     REQUIRE_MESSAGE(made, made.error());
     return test::recorded(*made, force_N, seed);
   };
@@ -163,7 +183,8 @@ TEST_CASE("ends that are known to move are part of the declared model: nothing i
   }
 }
 
-TEST_CASE("ends that hold the string against turning are told from a shorter or stiffer string: one of them, both, and how firmly") {
+TEST_CASE(
+    "ends that hold the string against turning are told from a shorter or stiffer string: one of them, both, and how firmly") {
   struct clamped {
     std::array<double, 2> clamping;
     std::string id;
@@ -175,7 +196,8 @@ TEST_CASE("ends that hold the string against turning are told from a shorter or 
     rosin::rig_burden burden;
     burden.string.clamping = c.clamping;
     const auto pluck = [&](double force_N, std::uint64_t seed) {
-      const auto made = rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.06});
+      const auto made =
+          rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.06});
       REQUIRE_MESSAGE(made, made.error());
       return test::recorded(*made, force_N, seed);
     };

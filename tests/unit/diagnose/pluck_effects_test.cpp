@@ -11,7 +11,8 @@
 
 namespace {
 
-const rosin::string_facts guitar_facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+const rosin::string_facts guitar_facts{
+    .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
 
 }  // namespace
 
@@ -44,14 +45,16 @@ TEST_CASE("every effect of the catalogue has a name of its own, starts inside it
     double change = lines.size() != plain.size() ? 1.0 : 0.0;
     for (std::size_t i = 0; i < std::min(lines.size(), plain.size()); ++i)
       for (std::size_t c = 0; c < 2; ++c)
-        change += std::abs(lines[i].residue[c] - plain[i].residue[c]) + std::abs(lines[i].pole - plain[i].pole) / std::abs(plain[i].pole);
+        change += std::abs(lines[i].residue[c] - plain[i].residue[c]) +
+                  std::abs(lines[i].pole - plain[i].pole) / std::abs(plain[i].pole);
     CHECK(change > 1e-9);
   }
   CHECK(ids.size() >= 18);
 }
 
 TEST_CASE("a high-pass that is hardly one changes nothing, once what the held string gave has left the offset") {
-  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::string_facts facts{
+      .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
   const auto layout = test::two_plucks({});
   const rosin::pluck_effect coupling = rosin::ac_coupling_effect(facts);
   const Eigen::VectorXd plain = test::values_of(layout);
@@ -64,7 +67,8 @@ TEST_CASE("a high-pass that is hardly one changes nothing, once what the held st
         const double begin = part == 0 ? 0.0 : 0.006;
         const auto level = [&](const rosin::scene_plucks& model, const Eigen::VectorXd& v) {
           double sum = 0;
-          for (const auto& line : model.lines(v, 1, part, begin, {50e3, 53e3}, 60)) sum += (line.residue[c] * std::exp(line.pole * later)).real();
+          for (const auto& line : model.lines(v, 1, part, begin, {50e3, 53e3}, 60))
+            sum += (line.residue[c] * std::exp(line.pole * later)).real();
           return sum;
         };
         CHECK(level(with, coupled) == doctest::Approx(level(without, plain)).epsilon(1e-3).scale(1));
@@ -81,7 +85,9 @@ TEST_CASE("a support that lags still moves in phase with the force at its freque
   };
   CHECK(std::abs(std::arg(admittance(1e-6, 2500))) < 1e-4);
   CHECK(std::abs(admittance(1e-6, 2500)) == doctest::Approx(std::abs(admittance(0, 2500))).epsilon(1e-4));
-  const auto reactance = [&](double lag_s) { return (1.0 / admittance(lag_s, 2500 * 1.01) - 1.0 / admittance(lag_s, 2500 * 0.99)).imag(); };
+  const auto reactance = [&](double lag_s) {
+    return (1.0 / admittance(lag_s, 2500 * 1.01) - 1.0 / admittance(lag_s, 2500 * 0.99)).imag();
+  };
   CHECK(reactance(1e-6) == doctest::Approx(reactance(0)).epsilon(1e-3));
   const double fast_and_dull[]{50e3, 0.6, 300, 1e-5};
   rosin::pluck_scene scene;

@@ -9,7 +9,8 @@ TEST_CASE("noise is told from what the recordings show before the release") {
   const auto layout = test::two_plucks({});
   const Eigen::VectorXd v = test::values_of(layout);
   constexpr double noise_N = 3e-4;
-  const std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, {}, v, 0, noise_N, 1), test::scene_pluck(layout, {}, v, 1, noise_N, 2)};
+  const std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, {}, v, 0, noise_N, 1),
+                                             test::scene_pluck(layout, {}, v, 1, noise_N, 2)};
   const rosin::scene_data data{takes, {.fundamental_Hz = 660}, {}, layout};
   rosin::scene_fit fit;
   fit.value = v, fit.horizon_periods = 1e9;
@@ -23,7 +24,8 @@ TEST_CASE("a record that begins with the release says nothing of its noise, and 
   const auto layout = test::two_plucks({});
   Eigen::VectorXd v = test::values_of(layout);
   v[layout.at(0, rosin::pluck_layout::release)] = v[layout.at(1, rosin::pluck_layout::release)] = 0.0003;
-  const std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, {}, v, 0, 3e-4, 1), test::scene_pluck(layout, {}, v, 1, 3e-4, 2)};
+  const std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, {}, v, 0, 3e-4, 1),
+                                             test::scene_pluck(layout, {}, v, 1, 3e-4, 2)};
   rosin::scene_fit fit;
   fit.value = v, fit.horizon_periods = 1e9;
   const auto before = rosin::detail::noise_before_release({takes, {.fundamental_Hz = 660}, {}, layout}, fit);

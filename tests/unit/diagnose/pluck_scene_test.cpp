@@ -25,11 +25,13 @@ TEST_CASE("a high-pass and a delay act as they are written") {
 }
 
 TEST_CASE("ends that give way take power and never return it") {
-  rosin::yielding_end end{.modes = {{.frequency_Hz = 900, .q = 12, .per_mass_per_s = 50}, {.frequency_Hz = 4000, .q = 30, .per_mass_per_s = 9}}};
+  rosin::yielding_end end{
+      .modes = {{.frequency_Hz = 900, .q = 12, .per_mass_per_s = 50}, {.frequency_Hz = 4000, .q = 30, .per_mass_per_s = 9}}};
   CHECK_FALSE(end.rigid());
   for (double f = 10; f < 60e3; f *= 1.1) CHECK(end.admittance({0, 2 * std::numbers::pi * f}).real() > 0);
   const double w = 2 * std::numbers::pi * 900;
-  CHECK(rosin::yielding_end{.modes = {{.frequency_Hz = 900, .q = 12, .per_mass_per_s = 50}}}.admittance({0, w}).real() == doctest::Approx(50 * 12 / w));
+  CHECK(rosin::yielding_end{.modes = {{.frequency_Hz = 900, .q = 12, .per_mass_per_s = 50}}}.admittance({0, w}).real() ==
+        doctest::Approx(50 * 12 / w));
 }
 
 TEST_CASE("a load on a bond is softer than the load, and hard as the bond when the load is heavy") {

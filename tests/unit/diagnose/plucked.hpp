@@ -13,8 +13,11 @@
 
 namespace test {
 
-inline const rosin::modal_rig plucked_rig{
-    .string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 900}}};
+inline const rosin::modal_rig plucked_rig{.string = {.length_m = 0.314,
+                                                     .tension_N = 72.5,
+                                                     .fundamental_Hz = 659.69,
+                                                     .bending_stiffness_Nm2 = 4.7e-5,
+                                                     .loss = {.quality = 900}}};
 
 /// Recorded by 16-bit converters with 0.3 mN of noise.
 inline rosin::pluck_take recorded(const rosin::modal_take& made, double force_N, std::uint64_t seed) {
@@ -24,16 +27,22 @@ inline rosin::pluck_take recorded(const rosin::modal_take& made, double force_N,
   take.strength_N = force_N;
   take.position = 0.302;
   const rosin::converter sensor{.gain = 1, .newtons_per_full_scale = 1.65, .noise_N = 0.3e-3, .bits = 16};
-  take.force_N = {rosin::convert(made.force_near_N, take.rate_Hz, sensor, 2 * seed).newtons(), rosin::convert(made.force_far_N, take.rate_Hz, sensor, 2 * seed + 1).newtons()};
+  take.force_N = {rosin::convert(made.force_near_N, take.rate_Hz, sensor, 2 * seed).newtons(),
+                  rosin::convert(made.force_far_N, take.rate_Hz, sensor, 2 * seed + 1).newtons()};
   return take;
 }
 inline rosin::pluck_take modal_pluck(double force_N, std::uint64_t seed, double release_duration_s = 0, double position = 0.3) {
-  return recorded(*rosin::simulate_pluck(plucked_rig, {.position = position, .force_N = force_N, .release_s = 0.004, .release_duration_s = release_duration_s, .duration_s = 0.06}), force_N, seed);
+  return recorded(*rosin::simulate_pluck(plucked_rig, {.position = position,
+                                                       .force_N = force_N,
+                                                       .release_s = 0.004,
+                                                       .release_duration_s = release_duration_s,
+                                                       .duration_s = 0.06}),
+                  force_N, seed);
 }
 
 /// A pluck of a scene, from its own lines: for what has to come back exactly.
-inline rosin::pluck_take scene_pluck(const rosin::pluck_layout& layout, const std::vector<rosin::pluck_effect>& effects, const Eigen::VectorXd& v, std::size_t which,
-                                     double noise_N, std::uint64_t seed) {
+inline rosin::pluck_take scene_pluck(const rosin::pluck_layout& layout, const std::vector<rosin::pluck_effect>& effects,
+                                     const Eigen::VectorXd& v, std::size_t which, double noise_N, std::uint64_t seed) {
   constexpr double rate = 128000;
   const rosin::scene_plucks model(layout, {0, 0}, effects);
   rosin::pluck_take take;
@@ -49,7 +58,8 @@ inline rosin::pluck_take scene_pluck(const rosin::pluck_layout& layout, const st
     const auto lines = model.lines(v, which, part, static_cast<double>(begin) / rate, {60e3, 63e3}, 160);
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t c = 0; c < 2; ++c)
-        for (const auto& line : lines) take.force_N[c][i] += (line.residue[c] * std::exp(line.pole * (static_cast<double>(i - begin) / rate))).real();
+        for (const auto& line : lines)
+          take.force_N[c][i] += (line.residue[c] * std::exp(line.pole * (static_cast<double>(i - begin) / rate))).real();
   }
   for (auto& x : take.force_N)
     for (double& y : x) y += noise(random);

@@ -22,7 +22,8 @@ double at(const std::vector<rosin::damped_line>& lines, std::size_t c, double t)
 TEST_CASE("a slow release is the fast one smeared by the rate at which the wire lets go") {
   auto slow = lines_scene();
   slow.release_duration_s = 60e-6;
-  const auto sharp = rosin::scene_lines(lines_scene(), 0.3, upper_band, 100, {}), smeared = rosin::scene_lines(slow, 0.3, upper_band, 100, {});
+  const auto sharp = rosin::scene_lines(lines_scene(), 0.3, upper_band, 100, {}),
+             smeared = rosin::scene_lines(slow, 0.3, upper_band, 100, {});
   constexpr int steps = 2000;
   for (const double t : {0.0005, 0.00161, 0.0042}) {
     double sum = 0;
@@ -37,10 +38,12 @@ TEST_CASE("a slow release is the fast one smeared by the rate at which the wire 
 TEST_CASE("a sensor that resonates follows its differential equation, driven by the force") {
   auto with = lines_scene();
   with.sensors[1] = {.resonance_Hz = 9000, .q = 8};
-  const auto force = rosin::scene_lines(lines_scene(), 0.3, upper_band, 100, {}), seen = rosin::scene_lines(with, 0.3, upper_band, 100, {});
+  const auto force = rosin::scene_lines(lines_scene(), 0.3, upper_band, 100, {}),
+             seen = rosin::scene_lines(with, 0.3, upper_band, 100, {});
   const double w = 2 * std::numbers::pi * 9000, h = 1e-7;
   for (const double t : {0.0003, 0.0011, 0.0031}) {
-    const double y = at(seen, 1, t), d1 = (at(seen, 1, t + h) - at(seen, 1, t - h)) / (2 * h), d2 = (at(seen, 1, t + h) - 2 * y + at(seen, 1, t - h)) / (h * h);
+    const double y = at(seen, 1, t), d1 = (at(seen, 1, t + h) - at(seen, 1, t - h)) / (2 * h),
+                 d2 = (at(seen, 1, t + h) - 2 * y + at(seen, 1, t - h)) / (h * h);
     CHECK(y + d1 / (w * 8) + d2 / (w * w) == doctest::Approx(at(force, 1, t)).epsilon(1e-3));
     CHECK(at(seen, 0, t) == doctest::Approx(at(force, 0, t)));
   }

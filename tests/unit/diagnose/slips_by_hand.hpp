@@ -20,8 +20,8 @@ inline void find_slips(rosin::slip_record& r) {
   r.slips = rosin::slips_of(r.force_N, r.relative_m_s, r.phases, 0.2, r.normal_N, 0, 2);
 }
 
-/// A slip every 250 samples, faster and under more normal force by `strength`; `law` is asked for the coefficient of friction at every
-/// sample in turn, at speed 0 while it sticks.
+/// A slip every 250 samples, faster and under more normal force by `strength`; `law` is asked for the coefficient of friction at
+/// every sample in turn, at speed 0 while it sticks.
 template <class Law>
 [[nodiscard]] rosin::slip_record slips_by_hand(double strength, std::size_t samples, double mean_size, Law law) {
   rosin::slip_record r;

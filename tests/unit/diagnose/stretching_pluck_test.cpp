@@ -23,7 +23,9 @@ TEST_CASE("a string that is not stretched rings as its partials do") {
     }
 }
 
-TEST_CASE("a single mode under its own tension rises in pitch as Duffing's equation says: df/f = (3/8) e, half of it shared with a turn of phase") {
+TEST_CASE(
+    "a single mode under its own tension rises in pitch as Duffing's equation says: df/f = (3/8) e, half of it shared with a "
+    "turn of phase") {
   // q'' + w^2 (1 + s q^2) q = 0 oscillates at w (1 + 3 s A^2 / 8): amplitude A of the slope, s the stretch.
   const rosin::ringing_string pure{100, 0, {1e9, 0, 0}, -1};
   const double h = 1 / 64e3, stretch = 0.5, slope = 0.02;
@@ -47,14 +49,18 @@ TEST_CASE("a string with the mean stretch rings nearly as the stretched one does
   const double relative = rosin::mean_stretch(elastic, 0.3, slope, stretch, 6);
   CHECK(relative > 0.002);
   const auto stretched = rosin::stretching_pluck(elastic, 0.3, slope, all(50e3), 200).run(stretch, 0, sample_s, 4, 1900);
-  const auto mean = rosin::stretching_pluck(rosin::tightened(elastic, relative), 0.3, slope, all(50e3), 200).run(0, 0, sample_s, 4, 1900);
+  const auto mean =
+      rosin::stretching_pluck(rosin::tightened(elastic, relative), 0.3, slope, all(50e3), 200).run(0, 0, sample_s, 4, 1900);
   const auto slack = rosin::stretching_pluck(elastic, 0.3, slope, all(50e3), 200).run(0, 0, sample_s, 4, 1900);
   double from_mean = 0, from_slack = 0;
-  for (std::size_t i = 0; i < mean[0].size(); ++i) from_mean += std::pow(stretched[0][i] - mean[0][i], 2), from_slack += std::pow(stretched[0][i] - slack[0][i], 2);
+  for (std::size_t i = 0; i < mean[0].size(); ++i)
+    from_mean += std::pow(stretched[0][i] - mean[0][i], 2), from_slack += std::pow(stretched[0][i] - slack[0][i], 2);
   CHECK(std::sqrt(from_mean) < 0.15 * std::sqrt(from_slack));
 }
 
-TEST_CASE("the strain of a released string: as much as was held, and half of it once a period has mixed what moves with what is stretched") {
+TEST_CASE(
+    "the strain of a released string: as much as was held, and half of it once a period has mixed what moves with what is "
+    "stretched") {
   const rosin::ringing_string ideal{500, 0, {1e9, 0, 0}, -1};
   const double rate = 200e3, slope = 0.01, at = 0.3;
   const rosin::stretching_pluck pluck(ideal, at, slope, {90e3, 90e3}, 400);
@@ -66,7 +72,8 @@ TEST_CASE("the strain of a released string: as much as was held, and half of it 
   double mean = 0;
   for (const double s : strain) mean += s / 400;
   CHECK(mean == doctest::Approx(held / 2).epsilon(0.02));
-  for (std::size_t i = 0; i < 200; ++i) CHECK(strain[i] == doctest::Approx(strain[i + 200]).epsilon(0.01).scale(held));  // twice a period
+  for (std::size_t i = 0; i < 200; ++i)
+    CHECK(strain[i] == doctest::Approx(strain[i + 200]).epsilon(0.01).scale(held));  // twice a period
 }
 
 TEST_CASE("two planes of one tuning are one plane, and apart they are two strings as long as nothing stretches") {
@@ -89,13 +96,16 @@ TEST_CASE("two planes of one tuning are one plane, and apart they are two string
 
 TEST_CASE("what stretching changes where there are two planes, against modes that are stepped with their tension") {
   rosin::modal_rig rig;
-  rig.string = {.length_m = 0.305, .tension_N = 64.2, .fundamental_Hz = 567, .bending_stiffness_Nm2 = 3e-5, .loss = {.quality = 1400}};
+  rig.string = {
+      .length_m = 0.305, .tension_N = 64.2, .fundamental_Hz = 567, .bending_stiffness_Nm2 = 3e-5, .loss = {.quality = 1400}};
   constexpr double axial_N = 12700, force_N = 0.7, detuning = 0.005, coupling = 0.07, rate = 128e3;
   const rosin::modal_settings settings{.sample_rate_Hz = rate, .oversampling = 16, .pass_Hz = 5e3, .stop_Hz = 60e3};
   const auto simulated = [&](double stiffness_N) {
     rosin::rig_burden burden{.detuning = detuning, .coupling = coupling};
     burden.string.axial_stiffness_N = stiffness_N;
-    return rosin::simulate_pluck(rig, burden, {.position = 0.2, .force_N = force_N, .release_s = 0.002, .duration_s = 0.012}, settings)->force_near_N;
+    return rosin::simulate_pluck(rig, burden, {.position = 0.2, .force_N = force_N, .release_s = 0.002, .duration_s = 0.012},
+                                 settings)
+        ->force_near_N;
   };
   const auto with = simulated(axial_N), without = simulated(1e-9);
   const double b = std::pow(std::numbers::pi / rig.string.length_m, 2) * rig.string.bending_stiffness_Nm2 / rig.string.tension_N;
@@ -105,12 +115,15 @@ TEST_CASE("what stretching changes where there are two planes, against modes tha
   constexpr std::size_t released = 256, count = 1000;
   const auto low_pass = settings.low_pass();
   const auto change = [&](const rosin::stretching_pluck& pluck) {  // through the same low-pass
-    const auto stretched = pluck.run(axial_N / (4 * rig.string.tension_N), 0, 1 / rate, 1, count)[0], slack = pluck.run(0, 0, 1 / rate, 1, count)[0];
+    const auto stretched = pluck.run(axial_N / (4 * rig.string.tension_N), 0, 1 / rate, 1, count)[0],
+               slack = pluck.run(0, 0, 1 / rate, 1, count)[0];
     std::vector<double> out(count, 0.0);
     const int reach = static_cast<int>(low_pass.half_width_s() * rate);
     for (int i = 0; i < static_cast<int>(count); ++i)
       for (int j = std::max(0, i - reach); j <= std::min(static_cast<int>(count) - 1, i + reach); ++j)
-        out[static_cast<std::size_t>(i)] += force_N * (stretched[static_cast<std::size_t>(j)] - slack[static_cast<std::size_t>(j)]) * low_pass((i - j) / rate) / rate;
+        out[static_cast<std::size_t>(i)] += force_N *
+                                            (stretched[static_cast<std::size_t>(j)] - slack[static_cast<std::size_t>(j)]) *
+                                            low_pass((i - j) / rate) / rate;
     return out;
   };
   const auto off = [&](const std::vector<double>& modelled) {

@@ -23,7 +23,8 @@ clamped_mode mode_between(const std::array<double, 2>& clamping, int n, double B
   for (int i = 0; i < 200; ++i) {
     kappa = std::sqrt(q * q + 1 / B);
     for (std::size_t e = 0; e < 2; ++e) {
-      const double spring = clamping[e] * std::sqrt(B), free = (1 - clamping[e]) * B * (q * q + kappa * kappa);  // B y'' = spring y'
+      const double spring = clamping[e] * std::sqrt(B),
+                   free = (1 - clamping[e]) * B * (q * q + kappa * kappa);  // B y'' = spring y'
       a[e] = std::atan2(spring * q, free + spring * kappa);
     }
     q = n * pi + a[0] + a[1];
@@ -31,11 +32,14 @@ clamped_mode mode_between(const std::array<double, 2>& clamping, int n, double B
   const double parity = n % 2 == 1 ? 1 : -1, w2 = q * q + B * q * q * q * q;
   double mass = 0;
   const int points = 400 * n + 4000;
-  const auto shape = [&](double z) { return std::sin(q * z - a[0]) + std::sin(a[0]) * std::exp(-kappa * z) + parity * std::sin(a[1]) * std::exp(-kappa * (1 - z)); };
+  const auto shape = [&](double z) {
+    return std::sin(q * z - a[0]) + std::sin(a[0]) * std::exp(-kappa * z) + parity * std::sin(a[1]) * std::exp(-kappa * (1 - z));
+  };
   for (int i = 0; i < points; ++i) mass += std::pow(shape((i + 0.5) / points), 2) / points;
   clamped_mode out{std::sqrt(w2), {}};
   for (std::size_t e = 0; e < 2; ++e) {
-    const double slope = q * std::cos(a[e]) - kappa * std::sin(a[e]), shear = -q * q * q * std::cos(a[e]) - kappa * kappa * kappa * std::sin(a[e]);
+    const double slope = q * std::cos(a[e]) - kappa * std::sin(a[e]),
+                 shear = -q * q * q * std::cos(a[e]) - kappa * kappa * kappa * std::sin(a[e]);
     out.force[e] = (e == 0 ? 1 : parity) * (slope - B * shear) * shape(x) / (mass * w2);
   }
   return out;
@@ -115,7 +119,9 @@ TEST_CASE("from poles nearby the search comes to the same end") {
   for (std::size_t i = 0; i < warm.size(); ++i) CHECK(std::abs(warm[i] - cold[i]) < 1e-3);
 }
 
-TEST_CASE("a string whose ends resist turning has the modes of the beam under tension: sin(q x - a) with a near field, q L = n pi + a + a'") {
+TEST_CASE(
+    "a string whose ends resist turning has the modes of the beam under tension: sin(q x - a) with a near field, q L = n pi + a "
+    "+ a'") {
   for (const auto& clamping : {std::array{1.0, 1.0}, std::array{1.0, 0.0}, std::array{0.0, 0.6}, std::array{0.3, 1.0}}) {
     rosin::pluck_scene s;
     s.string = {0.5, 4e-6 * std::numbers::pi * std::numbers::pi, {1e7, 0, 0}, 0};  // one second there and one back
@@ -125,25 +131,30 @@ TEST_CASE("a string whose ends resist turning has the modes of the beam under te
     for (std::size_t i = 0; i < 80; i += 7) {
       const auto mode = mode_between(clamping, static_cast<int>(i) + 1, 4e-6, 0.27);
       CHECK(lines[i].pole.imag() == doctest::Approx(mode.omega).epsilon(1e-7));
-      for (std::size_t e = 0; e < 2; ++e) CHECK(lines[i].residue[e].real() == doctest::Approx(mode.force[e]).epsilon(1e-5).scale(0.01));
+      for (std::size_t e = 0; e < 2; ++e)
+        CHECK(lines[i].residue[e].real() == doctest::Approx(mode.force[e]).epsilon(1e-5).scale(0.01));
     }
   }
 }
 
-TEST_CASE("while the wire holds a clamped string its ends share the force as those of a shorter one") {
+TEST_CASE("while the wire holds a clamped string its ends share the force as those of a shorter one" *
+          doctest::test_suite("long")) {
   rosin::pluck_scene s;
   s.string = {0.5, 4e-6 * std::numbers::pi * std::numbers::pi, {1e7, 0, 0}, 0};
   s.ends[0].clamping = 1, s.ends[1].clamping = 0.5;
   std::array<double, 2> sum{};
   for (int n = 1; n < 800; ++n) {
     const auto mode = mode_between({1, 0.5}, n, 4e-6, 0.27);
-    for (std::size_t e = 0; e < 2; ++e) sum[e] += mode.force[e] * std::pow(std::sin(n * std::numbers::pi / 800) / (n * std::numbers::pi / 800), 2);
+    for (std::size_t e = 0; e < 2; ++e)
+      sum[e] += mode.force[e] * std::pow(std::sin(n * std::numbers::pi / 800) / (n * std::numbers::pi / 800), 2);
   }
   const auto held = rosin::held_forces(s, 0.27);
   for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-5));
 }
 
-TEST_CASE("no partial of a clamped string is lost, whatever else is there, to where one was half a spacing away from where a pinned one has it") {
+TEST_CASE(
+    "no partial of a clamped string is lost, whatever else is there, to where one was half a spacing away from where a pinned "
+    "one has it") {
   for (const int what : {0, 1, 2, 3}) {
     CAPTURE(what);
     rosin::pluck_scene s;
@@ -170,11 +181,14 @@ TEST_CASE("an end that is damped and hardly held: what relaxes is one of the lin
   rosin::pluck_scene s;
   s.string = {300, 1e-5, {1e7, 0, 0}, 0};
   const double corner = 2 * std::numbers::pi * 30, fast = 2e7, conductance = 0.01;
-  s.ends[1].modes = {{.frequency_Hz = std::sqrt(corner * fast) / (2 * std::numbers::pi), .q = std::sqrt(corner / fast), .per_mass_per_s = conductance * fast}};
+  s.ends[1].modes = {{.frequency_Hz = std::sqrt(corner * fast) / (2 * std::numbers::pi),
+                      .q = std::sqrt(corner / fast),
+                      .per_mass_per_s = conductance * fast}};
   const auto poles = rosin::string_poles(s, 120e3, 500);
   REQUIRE(poles.front().imag() == 0);
   CHECK(poles.front().real() == doctest::Approx(-(corner + 600 * conductance)).epsilon(0.01));
-  // Of the static forces a triangle's sum of partials and the relaxation are left: F (1 - x, x) of a string longer by the end's yield.
+  // Of the static forces a triangle's sum of partials and the relaxation are left: F (1 - x, x) of a string longer by the end's
+  // yield.
   const auto sum = sum_of(rosin::decay_lines(s, 0.3, poles), 120e3);
   const double longer = 600 * conductance / corner;
   const auto held = rosin::held_forces(s, 0.3);
@@ -184,9 +198,14 @@ TEST_CASE("an end that is damped and hardly held: what relaxes is one of the lin
 
 TEST_CASE("ends that are alike have poles of their own: all lines together are what the wire held") {
   const auto damped = [](double conductance, double corner_Hz) { return rosin::overdamped_mode(conductance, corner_Hz); };
-  const auto ringing = [](double frequency_Hz, double per_mass) { return rosin::admittance_mode{.frequency_Hz = frequency_Hz, .q = 30, .per_mass_per_s = per_mass}; };
-  const std::vector<std::array<rosin::admittance_mode, 2>> both{{damped(0.01, 20), damped(0.01, 20.2)}, {damped(0.001, 20), damped(0.001, 20)}, {ringing(900, 5), ringing(900, 5)},
-                                                               {ringing(60, 50), ringing(60, 50)}, {ringing(1980, 8), ringing(1980, 8)}};
+  const auto ringing = [](double frequency_Hz, double per_mass) {
+    return rosin::admittance_mode{.frequency_Hz = frequency_Hz, .q = 30, .per_mass_per_s = per_mass};
+  };
+  const std::vector<std::array<rosin::admittance_mode, 2>> both{{damped(0.01, 20), damped(0.01, 20.2)},
+                                                                {damped(0.001, 20), damped(0.001, 20)},
+                                                                {ringing(900, 5), ringing(900, 5)},
+                                                                {ringing(60, 50), ringing(60, 50)},
+                                                                {ringing(1980, 8), ringing(1980, 8)}};
   for (const auto& modes : both) {
     CAPTURE(modes[0].frequency_Hz);
     rosin::pluck_scene s;

@@ -13,7 +13,8 @@ rosin::pluck_scene response_scene() {
   return s;
 }
 
-/// Mobility of a lossless pinned stiff string as the sum of its modes, in units of 1/Z: s (2 / T_one_way) sum sin sin / (s^2 + w^2).
+/// Mobility of a lossless pinned stiff string as the sum of its modes, in units of 1/Z: s (2 / T_one_way) sum sin sin / (s^2 +
+/// w^2).
 complex by_modes(const rosin::pluck_scene& p, double a, double b, complex s) {
   complex sum = 0;
   for (int n = 1; n < 60000; ++n) {
@@ -49,7 +50,8 @@ TEST_CASE("where every mode is damped by itself, a load meets what the sum over 
     }
     const complex modes = complex(0, w * 4 * p.string.fundamental_Hz) * sum;
     const rosin::string_at string(p, {0, w});
-    CHECK(std::abs((string.mobility(x, x) / string.sine() - modes).real()) < 4e-5);  // the loss shows in the real part; 1.6e-4 without its share
+    CHECK(std::abs((string.mobility(x, x) / string.sine() - modes).real()) <
+          4e-5);  // the loss shows in the real part; 1.6e-4 without its share
   }
 }
 
@@ -58,7 +60,8 @@ TEST_CASE("where the loaded string's modes lose by themselves, its poles are tho
   lossless.scatterers = {{.position = 0.33, .mass_s = 5e-5}};  // a tenth of the string's
   const auto pole = [](const rosin::pluck_scene& scene, complex s) {
     for (int step = 0; step < 30; ++step) {
-      const complex h = 1e-6 * std::abs(s), slope = (rosin::loop_determinant(scene, s + h) - rosin::loop_determinant(scene, s - h)) / (2.0 * h);
+      const complex h = 1e-6 * std::abs(s),
+                    slope = (rosin::loop_determinant(scene, s + h) - rosin::loop_determinant(scene, s - h)) / (2.0 * h);
       s -= rosin::loop_determinant(scene, s) / slope;
     }
     return s;
@@ -68,7 +71,8 @@ TEST_CASE("where the loaded string's modes lose by themselves, its poles are tho
   loaded.loaded_loss = 1;
   double apart = 0;
   for (const int n : {1, 2, 4, 7, 11}) {
-    const complex free = pole(lossless, {0, 2 * std::numbers::pi * lossless.string.partial_Hz(n)}), turned = free * complex(1, 1.0 / (2 * 500));
+    const complex free = pole(lossless, {0, 2 * std::numbers::pi * lossless.string.partial_Hz(n)}),
+                  turned = free * complex(1, 1.0 / (2 * 500));
     CHECK(pole(loaded, free).real() / turned.real() == doctest::Approx(1).epsilon(2e-3));
     CHECK(pole(loaded, free).imag() / turned.imag() == doctest::Approx(1).epsilon(1e-5));
     apart = std::max(apart, std::abs(pole(bare, free).real() / turned.real() - 1));
@@ -93,5 +97,6 @@ TEST_CASE("a load changes the loop, one without weight does not") {
   with.scatterers = {{.position = 0.4, .resistance = 1e9}};  // a pin: only what bends passes it, about 2 k / kappa
   const auto clamped = rosin::close_loop(with, 0.3, s);
   CHECK(std::abs(clamped.times_determinant[1] / clamped.determinant) < 0.15);
-  CHECK(std::abs(clamped.times_determinant[1] / clamped.determinant) < 0.2 * std::abs(bare.times_determinant[1] / bare.determinant));
+  CHECK(std::abs(clamped.times_determinant[1] / clamped.determinant) <
+        0.2 * std::abs(bare.times_determinant[1] / bare.determinant));
 }

@@ -20,7 +20,9 @@ TEST_CASE("a plain side is sinh and cosh") {
   CHECK(std::abs(here.force - std::cosh(s.gamma * 3e-4)) < 1e-12);
 }
 
-TEST_CASE("behind a load velocity is continuous and force jumps by what the load takes, from piece to piece as of transmission matrices") {
+TEST_CASE(
+    "behind a load velocity is continuous and force jumps by what the load takes, from piece to piece as of transmission "
+    "matrices") {
   const auto s = ideal_waves(2300);
   const rosin::scatterer bead{.position = 0.2, .mass_s = 3e-5}, finger{.position = 0.4, .resistance = 0.3};
   rosin::string_side side{{{2e-4, bead}, {4e-4, finger}}, {}};

@@ -8,7 +8,8 @@
 #include <doctest/doctest.h>
 
 TEST_CASE("a bead of a ninth of the string's mass is begun with where it is") {
-  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::string_facts facts{
+      .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
   const rosin::pluck_options options{.internal_loss = false};
   const auto layout = test::two_plucks(options);
   const std::vector<rosin::pluck_effect> catalogue{rosin::point_mass_effect(facts)};

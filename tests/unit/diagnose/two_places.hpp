@@ -41,7 +41,8 @@ inline double fade_at(int step) { return step >= 800 * finer && step < 7000 * fi
 
 inline two_places drive(double position, double width_m) {
   const double half = 0.5 * width_m / e_string.length_m;
-  rosin::modal_bank<2> bank(rosin::transverse_modes(e_string, 200e3), rosin::damping_convention::viscous, {position - half, position + half}, 1 / (finer * rate));
+  rosin::modal_bank<2> bank(rosin::transverse_modes(e_string, 200e3), rosin::damping_convention::viscous,
+                            {position - half, position + half}, 1 / (finer * rate));
   smooth_forces forces;
   two_places out;
   for (int i = 0; i < driven_samples * finer; ++i) {
@@ -82,7 +83,8 @@ inline rosin::contact_take take_of(const two_places& truth, double position) {
   const auto at = rosin::contact_at(e_string, position);
   rosin::contact_take take;
   take.near_N = truth.near, take.far_N = truth.far, take.force_N = truth.near, take.velocity_m_s = truth.v_near;
-  take.rate_Hz = rate, take.rod_speed_m_s = 1e-9, take.delay_s = at.delay_s, take.impedance_Ns_m = at.impedance_Ns_m, take.stiffness_s2 = at.stiffness_s2, take.inverse_q = 1e-3;
+  take.rate_Hz = rate, take.rod_speed_m_s = 1e-9, take.delay_s = at.delay_s, take.impedance_Ns_m = at.impedance_Ns_m,
+  take.stiffness_s2 = at.stiffness_s2, take.inverse_q = 1e-3;
   return take;
 }
 

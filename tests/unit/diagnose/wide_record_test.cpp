@@ -9,7 +9,9 @@ namespace {
 
 using contact_rigs::e_string;
 
-double error(const std::vector<double>& smooth, const std::vector<double>& truth) { return contact_rigs::off(smooth, contact_rigs::within_30_kHz(truth)); }
+double error(const std::vector<double>& smooth, const std::vector<double>& truth) {
+  return contact_rigs::off(smooth, contact_rigs::within_30_kHz(truth));
+}
 
 }  // namespace
 
@@ -33,7 +35,8 @@ TEST_CASE("wide record: the same with a bead and a finger on the string, and an 
   burden.loads = {{.position = 0.12, .mass_kg = 4e-6}, {.position = 0.7, .resistance_Ns_m = 2e-3}};
   burden.supports[1] = {.mass_kg = 0.004, .frequency_Hz = 2500, .quality = 15};
   rosin::pluck_scene scene;
-  for (const auto& l : burden.loads) scene.scatterers.push_back({.position = l.position, .mass_s = l.mass_kg / z, .resistance = l.resistance_Ns_m / z});
+  for (const auto& l : burden.loads)
+    scene.scatterers.push_back({.position = l.position, .mass_s = l.mass_kg / z, .resistance = l.resistance_Ns_m / z});
   scene.ends[1].modes = {{2500, 15, z / 0.004}};
   const auto truth = contact_rigs::drive(position, width, burden);
   auto take = contact_rigs::take_of(truth, position);

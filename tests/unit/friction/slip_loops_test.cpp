@@ -28,17 +28,23 @@ struct ellipses {
   }
 };
 
-const rosin::modal_rig rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}},
+const rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                      .tension_N = 72.5,
+                                      .fundamental_Hz = 660,
+                                      .bending_stiffness_Nm2 = 4.7e-5,
+                                      .loss = {.quality = 1000}},
                            .torsion = {.speed_ratio = 7, .impedance_ratio = 3.5, .quality = 15}};
 
 /// Loops of the last 0.07 s of a stroke at 0.3 of the string.
 template <class Law>
 std::vector<rosin::slip_loop> loops_of(const Law& law) {
-  const auto take = rosin::simulate_stroke(rig, law, rosin::steady_rod{.speed_m_s = rod_m_s, .normal_force_N = 0.3}, {.position = 0.3, .duration_s = 0.15}, {.oversampling = 4});
+  const auto take = rosin::simulate_stroke(rig, law, rosin::steady_rod{.speed_m_s = rod_m_s, .normal_force_N = 0.3},
+                                           {.position = 0.3, .duration_s = 0.15}, {.oversampling = 4});
   REQUIRE(take);
   const std::vector<double> force(take->contact_force_N.begin() + 10240, take->contact_force_N.end());
   std::vector<double> relative;
-  for (std::size_t i = 10240; i < take->size(); ++i) relative.push_back(take->centre_velocity_m_s[i] + take->torsion_velocity_m_s[i] - take->rod_velocity_m_s[i]);
+  for (std::size_t i = 10240; i < take->size(); ++i)
+    relative.push_back(take->centre_velocity_m_s[i] + take->torsion_velocity_m_s[i] - take->rod_velocity_m_s[i]);
   return rosin::slip_loops(force, relative, rosin::find_phases(relative, rod_m_s), rod_m_s, rate_Hz);
 }
 

@@ -10,12 +10,17 @@
 
 namespace {
 
-const rosin::modal_rig rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}},
+const rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                      .tension_N = 72.5,
+                                      .fundamental_Hz = 660,
+                                      .bending_stiffness_Nm2 = 4.7e-5,
+                                      .loss = {.quality = 1000}},
                            .torsion = {.speed_ratio = 7, .impedance_ratio = 3.5, .quality = 15}};
 
 std::vector<double> relative(const rosin::modal_take& t, double torsion) {
   std::vector<double> v(t.size());
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] = t.centre_velocity_m_s[i] + torsion * t.torsion_velocity_m_s[i] - t.rod_velocity_m_s[i];
+  for (std::size_t i = 0; i < v.size(); ++i)
+    v[i] = t.centre_velocity_m_s[i] + torsion * t.torsion_velocity_m_s[i] - t.rod_velocity_m_s[i];
   return v;
 }
 
@@ -61,7 +66,8 @@ TEST_CASE("slip phases: the interior keeps clear of both ends") {
 }
 
 TEST_CASE("slip phases: a simulated stroke, with torsion and without knowing of it") {
-  const auto take = rosin::simulate_stroke(rig, rosin::velocity_curve{rosin::two_exponential_curve<>{}}, rosin::steady_rod{.speed_m_s = 0.2, .normal_force_N = 0.3},
+  const auto take = rosin::simulate_stroke(rig, rosin::velocity_curve{rosin::two_exponential_curve<>{}},
+                                           rosin::steady_rod{.speed_m_s = 0.2, .normal_force_N = 0.3},
                                            {.position = 0.3, .duration_s = 0.06}, {.oversampling = 4});
   REQUIRE(take);
   const auto whole = rosin::find_phases(relative(*take, 1), 0.2);
@@ -72,7 +78,8 @@ TEST_CASE("slip phases: a simulated stroke, with torsion and without knowing of 
   const auto inside = rosin::interior(whole.sticks, take->size(), 4);
   const auto r = relative(*take, 1);
   std::size_t late = 0, off = 0;
-  for (std::size_t i = 2500; i < r.size(); ++i) late += inside[i] ? 1U : 0U, off += inside[i] && std::abs(r[i]) > 0.05 * 0.2 ? 1U : 0U;
+  for (std::size_t i = 2500; i < r.size(); ++i)
+    late += inside[i] ? 1U : 0U, off += inside[i] && std::abs(r[i]) > 0.05 * 0.2 ? 1U : 0U;
   CHECK(late > 500);
   CHECK(static_cast<double>(off) < 0.1 * static_cast<double>(late));
   // without torsion the threshold widens with the ripple, and about the same share sticks

@@ -97,10 +97,8 @@ TEST_CASE("on both branches and in both directions: on the line, on the curve, a
     const auto contact = law(line);
     const double slip = line.slip(contact.force_N);
     CHECK(contact.force_N * slip <= 1e-15);
-    if (contact.slipping)
-      CHECK(std::abs(contact.force_N) == doctest::Approx(0.3 * curve(std::abs(slip)).value).epsilon(1e-10));
-    else
-      CHECK(slip == doctest::Approx(0.0));
+    if (contact.slipping) CHECK(std::abs(contact.force_N) == doctest::Approx(0.3 * curve(std::abs(slip)).value).epsilon(1e-10));
+    else CHECK(slip == doctest::Approx(0.0));
     CHECK(std::abs(contact.force_N) <= 0.3 * curve(0).value + 1e-12);
     ++(contact.slipping ? slipped : stuck);
   }

@@ -5,8 +5,8 @@
 
 #include <support/temporary_folder.hpp>
 
-#include <csignal>
 #include <sys/wait.h>
+#include <csignal>
 
 TEST_CASE("the text is there, whole, and nothing else is left; what cannot be written is named") {
   const test::temporary_folder folder;

@@ -15,7 +15,8 @@ TEST_CASE("a packet byte by byte as the header's table says") {
     CHECK(plain[i] != 0);
   }
   REQUIRE(rosin::cobs_decode(plain.data(), size - 1) == 26);
-  const std::array<std::uint8_t, 22> expected{'R', 7, 2, 16, 2, 0, 0x00, 0x20, 0xa1, 0x07, 4, 3, 2, 1, 1, 0, 0xfe, 0xff, 0x34, 0x12, 0x00, 0x80};
+  const std::array<std::uint8_t, 22> expected{'R', 7, 2, 16, 2, 0,    0x00, 0x20, 0xa1, 0x07, 4,
+                                              3,   2, 1, 1,  0, 0xfe, 0xff, 0x34, 0x12, 0x00, 0x80};
   for (std::size_t i = 0; i < expected.size(); ++i) {
     CAPTURE(i);
     CHECK(plain[i] == expected[i]);

@@ -15,7 +15,8 @@ TEST_CASE("status reports of GRBL 1.1, as its manual shows them") {
   CHECK(s->speed_m_s == doctest::Approx(0.01));
   CHECK(rosin::parse_grbl_status("<Alarm|MPos:1.000,0.000,0.000|FS:0,0>")->state == rosin::motion_state::alarm);
   CHECK(rosin::parse_grbl_status("<Idle|MPos:1.000,0.000,0.000>")->state == rosin::motion_state::idle);
-  for (const char* none : {"ok", "", "<>", "<Idle>", "<Idle|WPos:1,2,3>", "<Odd|MPos:1,2,3>", "<Idle|MPos:x>"}) CHECK_FALSE(rosin::parse_grbl_status(none));
+  for (const char* none : {"ok", "", "<>", "<Idle>", "<Idle|WPos:1,2,3>", "<Odd|MPos:1,2,3>", "<Idle|MPos:x>"})
+    CHECK_FALSE(rosin::parse_grbl_status(none));
 }
 
 TEST_CASE("settings, errors and alarms") {

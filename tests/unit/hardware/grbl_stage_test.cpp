@@ -15,7 +15,10 @@ namespace {
 /// The simulated controller behind a pseudo-terminal, in its own thread.
 class sled_on_a_line {
 public:
-  explicit sled_on_a_line(rosin::grbl_simulator sled = {}) : simulator{std::move(sled)}, line_{*rosin::pseudo_terminal::open()}, thread_{[this](const std::stop_token& stop) { run(stop); }} {}
+  explicit sled_on_a_line(rosin::grbl_simulator sled = {})
+      : simulator{std::move(sled)}, line_{*rosin::pseudo_terminal::open()}, thread_{[this](const std::stop_token& stop) {
+          run(stop);
+        }} {}
   rosin::byte_link link() const { return *rosin::byte_link::open(line_.path(), 115200); }
 
   std::mutex mutex;

@@ -70,10 +70,11 @@ TEST_CASE("lost, cut, doubled and corrupted packets: every missing frame is anno
     bytes packet = d.packet();
     const std::uint64_t frames = d.sent - before;
     const auto fate = i == 0 || i == 3999 ? 99UL : d.random() % 20;
-    if (fate == 1) packet.resize(1 + d.random() % (packet.size() - 2));                        // cut: runs into the next
+    if (fate == 1) packet.resize(1 + d.random() % (packet.size() - 2));  // cut: runs into the next
     else if (fate == 2) packet[d.random() % (packet.size() - 1)] ^= static_cast<std::uint8_t>(1U << d.random() % 8);
-    else if (fate == 3) {                                                                      // a burst
-      for (std::size_t k = packet.size() / 3; k < packet.size() / 2; ++k) packet[k] = static_cast<std::uint8_t>(1 + d.random() % 255);
+    else if (fate == 3) {  // a burst
+      for (std::size_t k = packet.size() / 3; k < packet.size() / 2; ++k)
+        packet[k] = static_cast<std::uint8_t>(1 + d.random() % 255);
     }
     const bool gone = fate == 0 || fate == 2 || fate == 3;
     if (fate != 0) push_in_pieces(decoder, packet, d.random);

@@ -79,7 +79,9 @@ TEST_CASE("a line without packets, a device that is pulled and one that changes 
   REQUIRE(link);
   const std::array<std::int32_t, 4> samples{};
   rosin::packet_encoder<100> encoder{{.stream = 1, .channels = 2, .bits = 16, .rate_mHz = 1000000}};
-  const auto send = [&](auto& from) { return pair->device().write({reinterpret_cast<const char*>(from.data()), from.encode(samples.data(), 2)}); };
+  const auto send = [&](auto& from) {
+    return pair->device().write({reinterpret_cast<const char*>(from.data()), from.encode(samples.data(), 2)});
+  };
   REQUIRE_FALSE(pair->device().write(std::string(1, '\0')));
   REQUIRE_FALSE(send(encoder));
   auto source = rosin::serial_source::open(*std::move(link));

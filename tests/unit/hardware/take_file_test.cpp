@@ -8,9 +8,9 @@
 
 #include <random>
 
-#include <csignal>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <csignal>
 
 namespace {
 
@@ -36,7 +36,8 @@ struct pretended_disk {
     bytes out = safe;
     for (const auto& [offset, what] : cache) {
       const std::size_t part = random() % 3 == 0 ? 0 : random() % 2 == 0 ? what.size() : random() % (what.size() + 1);
-      if (part == 0 || offset > out.size()) continue;  // a file has no holes: what comes behind a missing piece is not there either
+      if (part == 0 || offset > out.size())
+        continue;  // a file has no holes: what comes behind a missing piece is not there either
       out.resize(std::max<std::size_t>(out.size(), offset + part));
       std::copy_n(what.begin(), part, out.begin() + static_cast<std::ptrdiff_t>(offset));
     }
@@ -61,7 +62,8 @@ struct pretended_file {
   std::optional<rosin::failure> sync() {
     const std::scoped_lock lock{disk->mutex};
     disk->safe.resize(std::max<std::size_t>(disk->safe.size(), disk->size));
-    for (const auto& [offset, what] : disk->cache) std::copy(what.begin(), what.end(), disk->safe.begin() + static_cast<std::ptrdiff_t>(offset));
+    for (const auto& [offset, what] : disk->cache)
+      std::copy(what.begin(), what.end(), disk->safe.begin() + static_cast<std::ptrdiff_t>(offset));
     disk->cache.clear();
     disk->last_sync = std::chrono::steady_clock::now();
     return std::nullopt;

@@ -9,7 +9,8 @@
 namespace {
 
 /// A file as it lies on the disk while it is being written, or at its end.
-std::string written(const test::temporary_folder& folder, const rosin::frame_format& f, const std::vector<double>& samples, bool done, std::size_t cut = 0) {
+std::string written(const test::temporary_folder& folder, const rosin::frame_format& f, const std::vector<double>& samples,
+                    bool done, std::size_t cut = 0) {
   std::string bytes;
   std::array<std::uint8_t, 4> one{};
   for (const double x : samples) {

@@ -14,8 +14,8 @@
 static_assert(rosin::LaneFft<rosin::lane_fft<float>, float> && !rosin::LaneFft<rosin::eigen_fft<std::complex<float>>, float>);
 static_assert(rosin::block_transform<double, rosin::eigen_fft<std::complex<double>>>::lanes == 1);
 
-TEST_CASE_TEMPLATE("both kinds of transform give the same bins where position() says, and come back", Fft, rosin::lane_fft<double>,
-                   rosin::lane_fft<double, 1>, rosin::eigen_fft<std::complex<double>>) {
+TEST_CASE_TEMPLATE("both kinds of transform give the same bins where position() says, and come back", Fft,
+                   rosin::lane_fft<double>, rosin::lane_fft<double, 1>, rosin::eigen_fft<std::complex<double>>) {
   const std::size_t n = 64;
   rosin::block_transform<double, Fft> fft(n);
   constexpr std::size_t lanes = rosin::block_transform<double, Fft>::lanes;

@@ -36,7 +36,8 @@ void each_lane_is_a_transform(std::size_t n) {
 
   fft.inverse(bins.data());
   worst = 0;
-  for (std::size_t j = 0; j < x.size(); ++j) worst = std::max(worst, static_cast<double>(std::abs(bins[j] / static_cast<T>(n) - x[j])));
+  for (std::size_t j = 0; j < x.size(); ++j)
+    worst = std::max(worst, static_cast<double>(std::abs(bins[j] / static_cast<T>(n) - x[j])));
   CHECK(worst < 4 * laws::allowed<T>(n));
 }
 

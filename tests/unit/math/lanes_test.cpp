@@ -9,7 +9,8 @@
 #include <limits>
 
 static_assert(sizeof(rosin::lane_complex<float, 1>) == 2 * sizeof(float));
-static_assert(sizeof(rosin::lane_complex<double, rosin::register_lanes<double>>) == 2 * rosin::register_lanes<double> * sizeof(double));
+static_assert(sizeof(rosin::lane_complex<double, rosin::register_lanes<double>>) ==
+              2 * rosin::register_lanes<double> * sizeof(double));
 
 namespace {
 
@@ -28,7 +29,8 @@ void arithmetic_is_that_of_complex_numbers() {
     z.store(out.data());
     for (std::size_t lane = 0; lane < Count; ++lane) {
       const std::complex<T> p{a[lane], a[Count + lane]}, q{b[lane], b[Count + lane]};
-      CHECK(std::abs(std::complex<T>{out[lane], out[Count + lane]} - expected(p, q)) <= T(400) * std::numeric_limits<T>::epsilon());
+      CHECK(std::abs(std::complex<T>{out[lane], out[Count + lane]} - expected(p, q)) <=
+            T(400) * std::numeric_limits<T>::epsilon());
     }
   };
   check(x + y, [](auto p, auto q) { return p + q; });

@@ -11,7 +11,9 @@ using complex = std::complex<double>;
 template <class Check>
 void everywhere(Check&& check) {
   for (const double size : {1e-100, 1e-3, 1.0, 7e4, 1e100})
-    for (const complex direction : {complex(1, 0), complex(-1, 0), complex(0, 1), complex(0, -1), complex(0.6, 0.8), complex(-0.6, 0.8), complex(-0.6, -0.8), complex(1, 1e-9), complex(-1, -1e-9)}) check(size * direction);
+    for (const complex direction : {complex(1, 0), complex(-1, 0), complex(0, 1), complex(0, -1), complex(0.6, 0.8),
+                                    complex(-0.6, 0.8), complex(-0.6, -0.8), complex(1, 1e-9), complex(-1, -1e-9)})
+      check(size * direction);
 }
 
 }  // namespace

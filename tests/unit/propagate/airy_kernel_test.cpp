@@ -13,8 +13,8 @@ constexpr double rate_Hz = 128e3;
 const rosin::string_parameters paper{0.314, 72.5, 659.69, 4.7e-5, {}};
 using complex = std::complex<double>;
 
-/// d(t) = (x/t) (1/2 pi) int exp(i (w(k) t - k x)) dk, along k = u + i a (sqrt(u^2 + d^2) - d): there the integrand dies away on either
-/// side. Dimensionless: k sqrt(B/T), t T / sqrt(B m), x sqrt(T/B), w = k sqrt(1 + k^2). In 1/s.
+/// d(t) = (x/t) (1/2 pi) int exp(i (w(k) t - k x)) dk, along k = u + i a (sqrt(u^2 + d^2) - d): there the integrand dies away on
+/// either side. Dimensionless: k sqrt(B/T), t T / sqrt(B m), x sqrt(T/B), w = k sqrt(1 + k^2). In 1/s.
 double by_contour(double t_s, double tau_s, double epsilon) {
   const double t = t_s / std::sqrt(epsilon), x = tau_s / std::sqrt(epsilon), a = 0.1, d = 0.05, reach = 3, step = 2e-3;
   complex sum = 0;

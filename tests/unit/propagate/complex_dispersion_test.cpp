@@ -13,5 +13,6 @@ TEST_CASE("the phase rate at complex frequencies solves q^2 + epsilon q^4 = w^2,
     CHECK(std::abs(q * q * (1.0 + epsilon * q * q) - w * w) < 1e-14 * std::norm(w) * (1 + epsilon * std::norm(q)));
     CHECK(q.real() > 0);
   }
-  for (const double w : {10.0, 1e4, 1e6}) CHECK(std::abs(rosin::phase_rate(complex(w, 0), epsilon) - rosin::phase_rate(w, epsilon)) < 1e-14 * w);
+  for (const double w : {10.0, 1e4, 1e6})
+    CHECK(std::abs(rosin::phase_rate(complex(w, 0), epsilon) - rosin::phase_rate(w, epsilon)) < 1e-14 * w);
 }

@@ -34,7 +34,8 @@ TEST_CASE("taps are the inverse transform of what is wanted") {
 TEST_CASE("the response of an FIR is its Fourier sum") {
   const rosin::fir k{-2, {0.5, -1.0, 2.0, 0.25}};
   std::complex<double> sum = 0;
-  for (int j = 0; j < 4; ++j) sum += k.taps[static_cast<std::size_t>(j)] * std::polar(1.0, -2 * std::numbers::pi * 3000.0 * (j - 2) / rate_Hz);
+  for (int j = 0; j < 4; ++j)
+    sum += k.taps[static_cast<std::size_t>(j)] * std::polar(1.0, -2 * std::numbers::pi * 3000.0 * (j - 2) / rate_Hz);
   CHECK(std::abs(k.response(3000, rate_Hz) - sum) < 1e-14);
 }
 

@@ -8,7 +8,8 @@
 namespace {
 
 constexpr double Z = 0.175;
-const rosin::modal_termination body{{{280, 25, Z / 0.25}, {460, 35, Z / 0.12}, {900, 30, Z / 0.1}, {2400, 8, Z / 0.03}, {3800, 25, Z / 0.2}}};
+const rosin::modal_termination body{
+    {{280, 25, Z / 0.25}, {460, 35, Z / 0.12}, {900, 30, Z / 0.1}, {2400, 8, Z / 0.03}, {3800, 25, Z / 0.2}}};
 
 std::vector<rosin::measured_admittance> table_of(const rosin::modal_termination& end, double to_Hz, double step_Hz) {
   std::vector<rosin::measured_admittance> table;
@@ -42,7 +43,8 @@ TEST_CASE("of a table made from modes come these modes, and few besides") {
   REQUIRE(table);
   const auto found = rosin::as_modes(*table, {.from_Hz = 50, .to_Hz = 8e3, .tolerance = 3e-3});
   REQUIRE(found);
-  MESSAGE(found->end.modes.size(), " modes, mismatch ", found->mismatch, ", off ", off(found->end, *table, 60, 7e3), ", from the modes ", off(found->end, body, 60, 7e3));
+  MESSAGE(found->end.modes.size(), " modes, mismatch ", found->mismatch, ", off ", off(found->end, *table, 60, 7e3),
+          ", from the modes ", off(found->end, body, 60, 7e3));
   CHECK(found->mismatch < 0.01);
   CHECK(found->end.modes.size() < 30);
   CHECK(off(found->end, *table, 60, 7e3) < 0.01);

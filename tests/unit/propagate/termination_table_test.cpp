@@ -8,14 +8,16 @@
 namespace {
 
 constexpr double Z = 0.175;
-const rosin::modal_termination body{{{280, 25, Z / 0.25}, {460, 35, Z / 0.12}, {900, 30, Z / 0.1}, {2400, 8, Z / 0.03}, {3800, 25, Z / 0.2}}};
+const rosin::modal_termination body{
+    {{280, 25, Z / 0.25}, {460, 35, Z / 0.12}, {900, 30, Z / 0.1}, {2400, 8, Z / 0.03}, {3800, 25, Z / 0.2}}};
 
 /// What a hammer and a laser would write down, up to `to_Hz`.
 std::vector<rosin::measured_admittance> measured(double from_Hz, double to_Hz, double step_Hz, double noise = 0) {
   std::mt19937 random{1};
   std::normal_distribution<double> gauss{0, noise};
   std::vector<rosin::measured_admittance> table;
-  for (double f = from_Hz; f <= to_Hz; f += step_Hz) table.push_back({f, body.relative_admittance(f) / Z + std::complex<double>(gauss(random), gauss(random))});
+  for (double f = from_Hz; f <= to_Hz; f += step_Hz)
+    table.push_back({f, body.relative_admittance(f) / Z + std::complex<double>(gauss(random), gauss(random))});
   return table;
 }
 
@@ -25,12 +27,14 @@ TEST_CASE("the completion of a table of modes is the modes") {
   const auto end = rosin::complete_admittance(measured(4, 12e3, 4), Z);
   REQUIRE(end);
   double off = 0, size = 0;
-  for (double f = 50; f < 9e3; f += 31.3) off += std::norm(end->relative_admittance(f) - body.relative_admittance(f)), size += std::norm(body.relative_admittance(f));
+  for (double f = 50; f < 9e3; f += 31.3)
+    off += std::norm(end->relative_admittance(f) - body.relative_admittance(f)), size += std::norm(body.relative_admittance(f));
   CHECK(std::sqrt(off / size) < 0.05);  // 4 Hz between points, 11 Hz the narrowest resonance
   CHECK(end->mismatch < 0.02);
   CHECK(end->repaired == 0);
   const auto grid = end->on_grid(5, 1600);
-  for (std::size_t k = 20; k < grid.size(); k += 37) CHECK(std::abs(grid[k] - end->relative_admittance(5.0 * static_cast<double>(k))) < 2e-3);
+  for (std::size_t k = 20; k < grid.size(); k += 37)
+    CHECK(std::abs(grid[k] - end->relative_admittance(5.0 * static_cast<double>(k))) < 2e-3);
   const std::complex<double> s(60, 2 * std::numbers::pi * 1500);
   std::complex<double> exact = 0;
   for (const auto& m : body.modes) exact += m(s);
@@ -43,7 +47,8 @@ TEST_CASE("modes above and below the table show as a spring and a mass") {
   CHECK(end->spring_s > 0);
   CHECK(end->per_mass_per_s > 0);
   double off = 0, size = 0;
-  for (double f = 700; f < 1400; f += 7.3) off += std::norm(end->relative_admittance(f) - body.relative_admittance(f)), size += std::norm(body.relative_admittance(f));
+  for (double f = 700; f < 1400; f += 7.3)
+    off += std::norm(end->relative_admittance(f) - body.relative_admittance(f)), size += std::norm(body.relative_admittance(f));
   CHECK(std::sqrt(off / size) < 0.1);
 }
 

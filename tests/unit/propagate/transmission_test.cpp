@@ -41,10 +41,12 @@ TEST_CASE("lengths of exact-phase kernels") {
     double beta;
     std::array<std::size_t, 4> most;
   };
-  for (const row& r : {row{0.25, {15, 20, 29, 49}}, row{0.3, {17, 22, 31, 52}}, row{0.7, {29, 36, 43, 64}}, row{0.75, {31, 37, 44, 58}}})
+  for (const row& r :
+       {row{0.25, {15, 20, 29, 49}}, row{0.3, {17, 22, 31, 52}}, row{0.7, {29, 36, 43, 64}}, row{0.75, {31, 37, 44, 58}}})
     for (std::size_t i = 0; i < 4; ++i) {
       const double error = std::pow(10.0, -2.0 - static_cast<double>(i));
-      const rosin::fir k = rosin::transmission_kernel(rosin::transmission{travel_s(r.beta), paper.stiffness_s2(), {}}, limits, rate_Hz, error);
+      const rosin::fir k =
+          rosin::transmission_kernel(rosin::transmission{travel_s(r.beta), paper.stiffness_s2(), {}}, limits, rate_Hz, error);
       CHECK(k.taps.size() <= r.most[i]);
       CHECK(worst(k, rosin::transmission{travel_s(r.beta), paper.stiffness_s2(), {}}) <= 1.02 * error);
     }

@@ -27,7 +27,9 @@ std::vector<double> integrated(const rosin::admittance_mode& m, double f, std::s
     const double rise = std::min(0.0, t - 0.02) / 0.003;
     return std::cos(2 * pi * f * t) * std::exp(-rise * rise);
   };
-  const auto slope = [&](double t, double x, double v) { return std::pair{v, m.per_mass_per_s * force(t) - w / m.q * v - w * w * x}; };
+  const auto slope = [&](double t, double x, double v) {
+    return std::pair{v, m.per_mass_per_s * force(t) - w / m.q * v - w * w * x};
+  };
   double x = 0, v = 0;
   std::vector<double> out(count);
   for (std::size_t n = 0; n < count; ++n) {
@@ -70,9 +72,12 @@ TEST_CASE("under a force that was always there an end is at rest, and what was b
   std::vector<double> moving(static_cast<std::size_t>(3 * bridge.memory_s() * rate_Hz));
   for (std::size_t n = 0; n < moving.size(); ++n) moving[n] = std::sin(2 * pi * 470 * static_cast<double>(n) / rate_Hz);
   const std::vector<double> later(moving.begin() + 1000, moving.end());
-  const rosin::end_motion whole = rosin::motion_of_end(bridge, moving, limits, rate_Hz), part = rosin::motion_of_end(bridge, later, limits, rate_Hz);
+  const rosin::end_motion whole = rosin::motion_of_end(bridge, moving, limits, rate_Hz),
+                          part = rosin::motion_of_end(bridge, later, limits, rate_Hz);
   double most = 0, size = 0;
-  for (std::size_t n = part.settled; n + 200 < later.size(); ++n) most = std::max(most, std::abs(part.times_impedance_N[n] - whole.times_impedance_N[n + 1000])), size = std::max(size, std::abs(part.times_impedance_N[n]));
+  for (std::size_t n = part.settled; n + 200 < later.size(); ++n)
+    most = std::max(most, std::abs(part.times_impedance_N[n] - whole.times_impedance_N[n + 1000])),
+    size = std::max(size, std::abs(part.times_impedance_N[n]));
   CHECK(most < 2e-3 * size);
 }
 
@@ -90,7 +95,8 @@ TEST_CASE("a measured table moves as the modes that it was measured on") {
   const auto end = rosin::complete_admittance(table, 0.175);
   REQUIRE(end);
   const std::vector<double> force = tone(520, 4000);
-  const auto by_table = rosin::motion_of_end(*end, force, limits, rate_Hz), by_modes = rosin::motion_of_end(body, force, limits, rate_Hz);
+  const auto by_table = rosin::motion_of_end(*end, force, limits, rate_Hz),
+             by_modes = rosin::motion_of_end(body, force, limits, rate_Hz);
   CHECK(worst(by_table.times_impedance_N, by_modes.times_impedance_N, 300, 3700) < 0.01);
   CHECK(by_table.settled > by_table.known.begin);
 }

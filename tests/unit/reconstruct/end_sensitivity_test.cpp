@@ -13,7 +13,8 @@ const rosin::band limits{10e3, 20e3};
 const rosin::bow_point at = rosin::contact_at({0.314, 72.5, 659.69, 4.7e-5, {800, 0, 0}}, 0.3);
 
 /// Reconstruction with these modes, one at each end.
-rosin::bow_motion<double> reconstructed(const std::array<rosin::admittance_mode, 2>& modes, const std::array<std::vector<double>, 2>& force) {
+rosin::bow_motion<double> reconstructed(const std::array<rosin::admittance_mode, 2>& modes,
+                                        const std::array<std::vector<double>, 2>& force) {
   const auto near = rosin::motion_of_end(rosin::modal_termination{{modes[0]}}, force[0], limits, rate_Hz).times_impedance_N;
   const auto far = rosin::motion_of_end(rosin::modal_termination{{modes[1]}}, force[1], limits, rate_Hz).times_impedance_N;
   return rosin::reconstructor<double, moving>(at, limits, rate_Hz)({force[0], force[1], near, far});

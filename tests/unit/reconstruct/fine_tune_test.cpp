@@ -12,7 +12,8 @@
 
 namespace {
 
-const rosin::string_parameters string{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
+const rosin::string_parameters string{
+    .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
 const rosin::band limits{20e3, 40e3};
 constexpr double noise_N = 0.3e-3;
 
@@ -25,8 +26,8 @@ const recorded& bowed() {
   static const recorded r = [] {
     recorded out;
     out.truth = *rosin::simulate_stroke({.string = string}, rosin::velocity_curve{rosin::two_exponential_curve<>{}},
-                                        rosin::steady_rod{.speed_m_s = 0.2, .normal_force_N = 0.3}, {.position = 0.3, .duration_s = 0.06},
-                                        {.oversampling = 4});
+                                        rosin::steady_rod{.speed_m_s = 0.2, .normal_force_N = 0.3},
+                                        {.position = 0.3, .duration_s = 0.06}, {.oversampling = 4});
     const rosin::converter sensor{.gain = 1, .newtons_per_full_scale = 2, .noise_N = noise_N, .bits = 16};
     out.near = rosin::convert(out.truth.force_near_N, out.truth.sample_rate_Hz, sensor, 1).newtons();
     out.far = rosin::convert(out.truth.force_far_N, out.truth.sample_rate_Hz, sensor, 2).newtons();

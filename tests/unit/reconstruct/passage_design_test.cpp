@@ -9,7 +9,8 @@ rosin::bow_point contact(double position) { return rosin::contact_at({0.314, 72.
 constexpr rosin::band of_rate(double rate_Hz) { return {0.3 * rate_Hz, 0.45 * rate_Hz}; }
 
 /// Largest difference of two of the 4 x 2 transfer functions in the pass band, against the largest of the output's row.
-double row_error(const std::vector<rosin::fir>& kernels, const rosin::bow_point& at, const rosin::band& limits, double rate_Hz, std::size_t row) {
+double row_error(const std::vector<rosin::fir>& kernels, const rosin::bow_point& at, const rosin::band& limits, double rate_Hz,
+                 std::size_t row) {
   const rosin::bow_point_transfer<rosin::full_physics> exact(at, limits, rate_Hz);
   double worst = 0, scale = 0;
   for (int i = 0; i <= 300; ++i) {
@@ -44,7 +45,9 @@ TEST_CASE("forces are the whole-record kernels, velocities within a few times th
 TEST_CASE("look-ahead is a transit time and half a kernel: of the nearer end for one version, of the farther for both") {
   const double rate_Hz = 128e3;
   const auto at = contact(0.3);
-  const auto ahead = [&](rosin::bow_version version) { return rosin::plan_passages(at, {1, 1}, of_rate(rate_Hz), rate_Hz, 1e-3, version).reach_ahead(); };
+  const auto ahead = [&](rosin::bow_version version) {
+    return rosin::plan_passages(at, {1, 1}, of_rate(rate_Hz), rate_Hz, 1e-3, version).reach_ahead();
+  };
   const double near = at.delay_s[0] * rate_Hz, far = at.delay_s[1] * rate_Hz;
   CHECK(ahead(rosin::bow_version::near) >= near);
   CHECK(ahead(rosin::bow_version::near) <= near + 20);

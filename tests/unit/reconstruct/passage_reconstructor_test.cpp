@@ -40,7 +40,8 @@ std::vector<rosin::termination_frame<T>> frames(const std::vector<double>& near,
 }
 
 /// The whole-record result with the same kernels, by direct sums in double.
-std::vector<double> whole(const rosin::fir& from_near, const rosin::fir& from_far, const std::vector<double>& near, const std::vector<double>& far) {
+std::vector<double> whole(const rosin::fir& from_near, const rosin::fir& from_far, const std::vector<double>& near,
+                          const std::vector<double>& far) {
   std::vector<double> out(near.size(), std::numeric_limits<double>::quiet_NaN());
   const auto n = static_cast<int>(near.size());
   for (int i = from_near.last(); i < n + from_near.first; ++i) {
@@ -59,8 +60,8 @@ bool is_unknown(double x) { return std::isnan(x); }
 template <class T>
 bool same(const rosin::bow_frame<T>& a, const rosin::bow_frame<T>& b, T within) {
   const auto near = [&](T x, T y) { return std::abs(x - y) <= within; };
-  return near(a.force_near_N, b.force_near_N) && near(a.force_far_N, b.force_far_N) && near(a.velocity_near_m_s, b.velocity_near_m_s) &&
-         near(a.velocity_far_m_s, b.velocity_far_m_s);
+  return near(a.force_near_N, b.force_near_N) && near(a.force_far_N, b.force_far_N) &&
+         near(a.velocity_near_m_s, b.velocity_near_m_s) && near(a.velocity_far_m_s, b.velocity_far_m_s);
 }
 
 }  // namespace
@@ -115,7 +116,8 @@ TEST_CASE_TEMPLATE("a block of any length gives what frame by frame gives, to ro
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < in.size(); ++i) {
       const bool unknown = is_unknown(static_cast<double>(one_by_one[i].force_near_N));
-      wrong += unknown ? !is_unknown(static_cast<double>(out[i].force_near_N)) : !same(out[i], one_by_one[i], 200 * std::numeric_limits<T>::epsilon());
+      wrong += unknown ? !is_unknown(static_cast<double>(out[i].force_near_N))
+                       : !same(out[i], one_by_one[i], 200 * std::numeric_limits<T>::epsilon());
     }
     CHECK(wrong == 0);
   }
@@ -154,7 +156,8 @@ TEST_CASE("reset brings back the beginning") {
   used.process(in, a);
   fresh.process(in, b);
   std::size_t different = 0;
-  for (std::size_t i = fixed->reach; i < in.size(); ++i) different += a[i].force_near_N != b[i].force_near_N || a[i].velocity_far_m_s != b[i].velocity_far_m_s;
+  for (std::size_t i = fixed->reach; i < in.size(); ++i)
+    different += a[i].force_near_N != b[i].force_near_N || a[i].velocity_far_m_s != b[i].velocity_far_m_s;
   CHECK(different == 0);
   CHECK(a.back().force_near_N == a.back().force_far_N);  // one version alone: both fields hold it
 }

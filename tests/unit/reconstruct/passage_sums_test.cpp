@@ -10,7 +10,9 @@
 namespace {
 
 template <class T>
-T number(std::size_t i) { return static_cast<T>(std::sin(1.3 * static_cast<double>(i * i % 511))); }
+T number(std::size_t i) {
+  return static_cast<T>(std::sin(1.3 * static_cast<double>(i * i % 511)));
+}
 
 }  // namespace
 
@@ -40,7 +42,8 @@ TEST_CASE("a doubled line holds the latest frames in a row, however they were pu
 }
 
 TEST_CASE_TEMPLATE("sums in registers are the plain sums", T, float, double) {
-  constexpr std::size_t lanes = rosin::register_lanes<T>, chunk = rosin::detail::passage_chunk<T>, quantum = rosin::detail::passage_quantum<T>;
+  constexpr std::size_t lanes = rosin::register_lanes<T>, chunk = rosin::detail::passage_chunk<T>,
+                        quantum = rosin::detail::passage_quantum<T>;
   std::vector<T> taps(6 * quantum), x(6 * quantum + chunk);
   for (std::size_t i = 0; i < taps.size(); ++i) taps[i] = number<T>(i);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = number<T>(i + 77);

@@ -15,9 +15,7 @@ namespace {
 constexpr double rate_Hz = 128e3;
 const rosin::band limits{30e3, 52e3};
 
-rosin::bow_point contact() {
-  return rosin::contact_at({0.314, 72.5, 659.69, 4.7e-5, {1000, 1e-9, 0}}, 0.3);
-}
+rosin::bow_point contact() { return rosin::contact_at({0.314, 72.5, 659.69, 4.7e-5, {1000, 1e-9, 0}}, 0.3); }
 
 /// Two noisy forces, reproducible without a generator.
 std::vector<double> forces(int seed, std::size_t n) {

@@ -17,7 +17,8 @@ std::vector<double> tone(double f, std::size_t n = 40000) {
 std::complex<double> amplitude(const std::vector<double>& x, double f, std::size_t periods = 20) {
   const auto n = static_cast<std::size_t>(std::lround(static_cast<double>(periods) / (f * step_s)));
   std::complex<double> sum = 0;
-  for (std::size_t i = x.size() - n; i < x.size(); ++i) sum += x[i] * std::polar(1.0, -2 * pi * f * static_cast<double>(i) * step_s);
+  for (std::size_t i = x.size() - n; i < x.size(); ++i)
+    sum += x[i] * std::polar(1.0, -2 * pi * f * static_cast<double>(i) * step_s);
   return 2.0 * sum / static_cast<double>(n);
 }
 
@@ -65,7 +66,8 @@ TEST_CASE("a sensor that rings at twice a tone passes on what it bends before th
   const auto octave = [&](bool rings_first) {
     std::array<std::vector<double>, 2> force{tone(f), tone(f)};
     rosin::sensor_faults faults;
-    faults.quadratic_per_N[0] = curve, faults.resonance_Hz[0] = 2 * f, faults.resonance_q[0] = q, faults.rings_first[0] = rings_first;
+    faults.quadratic_per_N[0] = curve, faults.resonance_Hz[0] = 2 * f, faults.resonance_q[0] = q,
+    faults.rings_first[0] = rings_first;
     rosin::disturb(force, faults, step_s);
     return std::abs(amplitude(force[0], 2 * f));
   };

@@ -11,14 +11,16 @@
 
 namespace {
 
-const rosin::string_parameters string{.length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}};
+const rosin::string_parameters string{
+    .length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}};
 const rosin::modal_rig rig{string, {}};
 constexpr double limit_Hz = 60e3;
 const rosin::modal_settings settings{.sample_rate_Hz = 96e3, .oversampling = 8, .mode_limit_Hz = limit_Hz};
 const test::moving_settings same{.rate_Hz = 96e3, .mode_limit_Hz = limit_Hz, .oversampling = 8};
 
 /// A bridge of three modes at the near end, a stiff nut of one at the far end.
-const std::array<std::vector<test::end_mode>, 2> ends{{{{460, 30, 0.1}, {2400, 12, 0.004}, {5100, 8, 0.003}}, {{7000, 20, 0.01}}}};
+const std::array<std::vector<test::end_mode>, 2> ends{
+    {{{460, 30, 0.1}, {2400, 12, 0.004}, {5100, 8, 0.003}}, {{7000, 20, 0.01}}}};
 
 rosin::rig_burden on_these() {
   rosin::rig_burden out;
@@ -33,7 +35,8 @@ TEST_CASE("without a burden plucks and strokes are those of the ideal rig") {
   REQUIRE(rosin::rig_burden{}.none());
   REQUIRE(!on_these().none());
   const rosin::modal_pluck pluck{.release_s = 0.0040037, .duration_s = 0.02};
-  const auto one = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings), other = rosin::simulate_pluck(rig, pluck, settings);
+  const auto one = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings),
+             other = rosin::simulate_pluck(rig, pluck, settings);
   REQUIRE((one && other));
   CHECK(one->size() == other->size());
   CHECK(test::apart(one->force_near_N, other->force_near_N) < 1e-3);
@@ -41,7 +44,8 @@ TEST_CASE("without a burden plucks and strokes are those of the ideal rig") {
   CHECK(test::apart(one->centre_velocity_m_s, other->centre_velocity_m_s) < 1e-2);
   const rosin::velocity_curve<rosin::two_exponential_curve<double>> law{};
   const rosin::modal_rig turning{string, {7, 3.5, 15}};
-  const auto bowed = rosin::simulate_stroke(turning, rosin::rig_burden{}, law, rosin::steady_rod{}, {.duration_s = 0.02}, settings);
+  const auto bowed =
+      rosin::simulate_stroke(turning, rosin::rig_burden{}, law, rosin::steady_rod{}, {.duration_s = 0.02}, settings);
   const auto peer = rosin::simulate_stroke(turning, law, rosin::steady_rod{}, {.duration_s = 0.02}, settings);
   REQUIRE((bowed && peer));
   CHECK(bowed->size() == peer->size());
@@ -54,7 +58,8 @@ TEST_CASE("without a burden plucks and strokes are those of the ideal rig") {
 TEST_CASE("plucks of a string on a bridge and a nut that move are those of component modes") {
   const test::moving_end_rig peer{string, ends};
   const double half_step = 0.5 / (same.rate_Hz * same.oversampling);  // where the other's slope of one step has its middle
-  const auto one = rosin::simulate_pluck(rig, on_these(), {.position = 0.3, .force_N = 1, .release_s = 0.004 + half_step, .duration_s = 0.03}, settings);
+  const auto one = rosin::simulate_pluck(
+      rig, on_these(), {.position = 0.3, .force_N = 1, .release_s = 0.004 + half_step, .duration_s = 0.03}, settings);
   REQUIRE(one);
   const auto other = test::pluck_moving_ends(peer, 0.3, 1, 0.004 + half_step, 0.03, same);
   CHECK(test::apart(one->force_near_N, other.near_N) < 2e-3);
@@ -83,7 +88,8 @@ TEST_CASE("a second plane takes its share of a pluck and none of what the wire h
   rosin::rig_burden two;
   two.detuning = 4e-3, two.coupling = 0.1;
   const rosin::modal_pluck pluck{.release_s = 0.004, .duration_s = 0.02};
-  const auto both = rosin::simulate_pluck(rig, two, pluck, settings), one = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
+  const auto both = rosin::simulate_pluck(rig, two, pluck, settings),
+             one = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
   auto sharper = rig;
   sharper.string.fundamental_Hz *= 1.004, sharper.string.tension_N *= 1.004 * 1.004;
   const auto other = rosin::simulate_pluck(sharper, rosin::rig_burden{}, pluck, settings);
@@ -98,7 +104,8 @@ TEST_CASE("planes of one pitch stretch a string as one plane does, since they ha
   rosin::rig_burden one, two;
   one.string.axial_stiffness_N = two.string.axial_stiffness_N = 2e4;
   const rosin::modal_pluck pluck{.force_N = 1.5, .release_s = 0.004, .duration_s = 0.02};
-  const auto single = rosin::simulate_pluck(rig, one, pluck, settings), slack = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
+  const auto single = rosin::simulate_pluck(rig, one, pluck, settings),
+             slack = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
   REQUIRE((single && slack));
   const double stretched = test::apart(single->force_near_N, slack->force_near_N);
   CHECK(stretched > 0.01);
@@ -106,8 +113,10 @@ TEST_CASE("planes of one pitch stretch a string as one plane does, since they ha
     two.coupling = coupling;
     const auto both = rosin::simulate_pluck(rig, two, pluck, settings);
     REQUIRE(both);
-    CHECK(test::apart(both->force_near_N, single->force_near_N) < 0.01 * stretched);  // the planes were stepped one after the other
-    CHECK(test::apart(both->centre_velocity_m_s, single->centre_velocity_m_s) < 0.01 * test::apart(single->centre_velocity_m_s, slack->centre_velocity_m_s));
+    CHECK(test::apart(both->force_near_N, single->force_near_N) <
+          0.01 * stretched);  // the planes were stepped one after the other
+    CHECK(test::apart(both->centre_velocity_m_s, single->centre_velocity_m_s) <
+          0.01 * test::apart(single->centre_velocity_m_s, slack->centre_velocity_m_s));
   }
 }
 
@@ -117,7 +126,8 @@ TEST_CASE("what a sensor feels of the strain is the same from two planes of one 
   rosin::rig_burden two = one;
   two.coupling = 0.4;
   const rosin::modal_pluck pluck{.release_s = 0.004, .duration_s = 0.02};
-  const auto single = rosin::simulate_pluck(rig, one, pluck, settings), both = rosin::simulate_pluck(rig, two, pluck, settings), deaf = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
+  const auto single = rosin::simulate_pluck(rig, one, pluck, settings), both = rosin::simulate_pluck(rig, two, pluck, settings),
+             deaf = rosin::simulate_pluck(rig, rosin::rig_burden{}, pluck, settings);
   REQUIRE((single && both && deaf));
   CHECK(test::apart(single->force_near_N, deaf->force_near_N) > 1e-3);
   CHECK(test::apart(both->force_near_N, single->force_near_N) < 1e-9);

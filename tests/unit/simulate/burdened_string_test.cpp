@@ -7,7 +7,8 @@
 
 namespace {
 
-const rosin::modal_rig rig{{.length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}}};
+const rosin::modal_rig rig{
+    {.length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}}};
 constexpr double step_s = 1 / 1024e3;
 
 /// Forces on the near end after a pluck of 1 N at 0.3, every 16th step.
@@ -37,7 +38,8 @@ double off_pole(const std::vector<double>& x, std::complex<double> pole, double 
 }  // namespace
 
 TEST_CASE("at rest the ends carry the wire's force, whatever hangs on the string") {
-  rosin::string_burden burden{.loads = {{.position = 0.6, .mass_kg = 3e-6, .stiffness_N_m = 40}}, .supports = {{{0.004, 1500, 10}, {}}}};
+  rosin::string_burden burden{.loads = {{.position = 0.6, .mass_kg = 3e-6, .stiffness_N_m = 40}},
+                              .supports = {{{0.004, 1500, 10}, {}}}};
   rosin::burdened_string string{rig, burden, {0.3}, 120e3, step_s};
   string.rest_under(Eigen::VectorXd::Ones(1));
   (void)string.free_velocity();
@@ -52,9 +54,12 @@ TEST_CASE("at rest the ends carry the wire's force, whatever hangs on the string
   CHECK(first.end_N.sum() > 0.5);
 }
 
-TEST_CASE("partials of a string with a bead, a finger, a support that yields and a bridge of two modes stand where its closed form has them") {
+TEST_CASE(
+    "partials of a string with a bead, a finger, a support that yields and a bridge of two modes stand where its closed form has "
+    "them") {
   const double z = rig.string.impedance_Ns_m();
-  rosin::string_burden burden{.loads = {{.position = 0.41, .mass_kg = 5e-6}, {.position = 0.7, .resistance_Ns_m = 4e-4}}, .supports = {{{}, {0.003, 2100, 12}}}};
+  rosin::string_burden burden{.loads = {{.position = 0.41, .mass_kg = 5e-6}, {.position = 0.7, .resistance_Ns_m = 4e-4}},
+                              .supports = {{{}, {0.003, 2100, 12}}}};
   burden.ends[0].modes = {{900, 10, z / 0.02}, {3300, 9, z / 0.005}};
   rosin::pluck_scene scene;
   scene.string = {rig.string.fundamental_Hz, rig.string.inharmonicity(), {1000, 0, 0}, 0};

@@ -11,7 +11,9 @@
 
 namespace {
 
-const rosin::modal_rig rig{{.length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}}, {7, 3.5, 15}};
+const rosin::modal_rig rig{
+    {.length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}},
+    {7, 3.5, 15}};
 constexpr double rate_Hz = 128000;
 constexpr int oversampling = 16;
 constexpr double step_s = 1 / rate_Hz / oversampling;
@@ -22,7 +24,8 @@ TEST_CASE("a pluck of a string without a burden is that of the closed form") {
   const rosin::modal_decimator decimate{rosin::modal_settings{}.low_pass(), step_s, oversampling};
   const double lead_s = static_cast<double>(decimate.reach()) * step_s;
   for (const double duration : {0.0, 40e-6}) {
-    const auto steps = rosin::step_pluck(rig, {}, {.release_s = 0.004 + lead_s, .release_duration_s = duration}, 0.02 + 2 * lead_s, 250e3, step_s);
+    const auto steps = rosin::step_pluck(rig, {}, {.release_s = 0.004 + lead_s, .release_duration_s = duration},
+                                         0.02 + 2 * lead_s, 250e3, step_s);
     const auto near = decimate.points(steps.end_N[0]);
     const auto truth = rosin::simulate_pluck(rig, {.release_s = 0.004, .release_duration_s = duration, .duration_s = 0.02});
     REQUIRE(truth);
@@ -50,7 +53,8 @@ TEST_CASE("a wire of some width plucks as many narrow ones beside each other do"
 
 TEST_CASE("a transducer that feels the tension reads the string's strain besides") {
   const rosin::burdened_pluck pluck{.position = 0.3, .force_N = 1, .release_s = 0.001};
-  const auto plain = rosin::step_pluck(rig, {}, pluck, 0.006, 60e3, step_s), felt = rosin::step_pluck(rig, {.sensed_stiffness_N = {0, -2000}}, pluck, 0.006, 60e3, step_s);
+  const auto plain = rosin::step_pluck(rig, {}, pluck, 0.006, 60e3, step_s),
+             felt = rosin::step_pluck(rig, {.sensed_stiffness_N = {0, -2000}}, pluck, 0.006, 60e3, step_s);
   CHECK(felt.end_N[0] == plain.end_N[0]);
   const double held = std::pow(1 / rig.string.tension_N, 2) * 0.3 * 0.7 / 2;
   CHECK(felt.end_N[1][100] - plain.end_N[1][100] == doctest::Approx(-2000 * held).epsilon(0.02));
@@ -67,7 +71,9 @@ TEST_CASE("a transducer that feels the tension reads the string's strain besides
 TEST_CASE("a stroke is that of modal_stroke; a contact of no width is one of very little; a heavy rod does not yield") {
   const rosin::velocity_curve<rosin::two_exponential_curve<double>> law{{0.38, 0.02, 0.42, 0.14, 0.35}};
   const rosin::steady_rod motion{.speed_m_s = 0.2, .normal_force_N = 0.3};
-  const auto play = [&](const rosin::yielding_rod& rod, double width) { return rosin::step_stroke(rig, {}, law, motion, rod, 0.3, width, 0.02, 250e3, step_s); };
+  const auto play = [&](const rosin::yielding_rod& rod, double width) {
+    return rosin::step_stroke(rig, {}, law, motion, rod, 0.3, width, 0.02, 250e3, step_s);
+  };
   const auto plain = play({}, 0);
   const rosin::modal_contact peer{rig, 0.3, 250e3, step_s};
   CHECK(plain.force_N.size() == plain.end_N[0].size());

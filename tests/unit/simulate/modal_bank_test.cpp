@@ -133,12 +133,14 @@ TEST_CASE("under a lasting force it comes to rest with the static shares it stat
   CHECK(bank.near_share(0) == doctest::Approx(share));
 }
 
-TEST_CASE("a port that has moved is one that was there from the start, for all that is read, and of the modes' state nothing is lost") {
+TEST_CASE(
+    "a port that has moved is one that was there from the start, for all that is read, and of the modes' state nothing is lost") {
   const rosin::string_parameters string{
       .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 500}};
   const auto modes = rosin::transverse_modes(string, 200e3);
   using bank = rosin::modal_bank<2>;
-  bank both{modes, rosin::damping_convention::viscous, {0.2, 0.617}, 1e-6}, moved{modes, rosin::damping_convention::viscous, {0.2, 0.9}, 1e-6};
+  bank both{modes, rosin::damping_convention::viscous, {0.2, 0.617}, 1e-6},
+      moved{modes, rosin::damping_convention::viscous, {0.2, 0.9}, 1e-6};
   for (int i = 0; i < 50; ++i) both.advance({std::sin(0.4 * i), 0}), moved.advance({std::sin(0.4 * i), 0});
   moved.move_to({0.2, 0.617});
   for (std::size_t j = 0; j < 2; ++j) {

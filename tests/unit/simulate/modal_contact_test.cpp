@@ -74,7 +74,8 @@ TEST_CASE("a positive force turns and moves the surface forwards") {
   CHECK(state.torsion_m_s > 0.3);
 }
 
-TEST_CASE("a steady force that runs along an ideal string: the closed form of its velocity and of the forces on the ends, Doppler's") {
+TEST_CASE(
+    "a steady force that runs along an ideal string: the closed form of its velocity and of the forces on the ends, Doppler's") {
   auto rig = soft_rig(1e6);
   rig.string.bending_stiffness_Nm2 = 0;
   rig.torsion = {};

@@ -102,7 +102,8 @@ TEST_CASE("energy: what the rod gives is rubbed away, lost in the string or in i
   CHECK(e.transverse.stored_J > 0);
   CHECK(e.left_out_J >= 0);
   double rod_J = 0;  // from the samples that come out
-  for (std::size_t n = 0; n < take->size(); ++n) rod_J += take->contact_force_N[n] * take->rod_velocity_m_s[n] / take->sample_rate_Hz;
+  for (std::size_t n = 0; n < take->size(); ++n)
+    rod_J += take->contact_force_N[n] * take->rod_velocity_m_s[n] / take->sample_rate_Hz;
   CHECK(e.rod_J == doctest::Approx(rod_J).epsilon(2e-3));
   CHECK(!rosin::simulate_stroke(e_rig(), curve_law{}, rod, {.duration_s = 0.002}, quick)->energy);
 }
@@ -164,7 +165,8 @@ TEST_CASE("lifted, the rod leaves a string that rings freely, and what it did be
   CHECK(rosin::motion_of(*take) == rosin::bowed_motion::stick_slip);
   const auto power = [&](double from_s) {  // of the near force over 0.01 s
     double sum = 0;
-    for (auto n = static_cast<std::size_t>(from_s * 128e3); n < static_cast<std::size_t>((from_s + 0.01) * 128e3); ++n) sum += take->force_near_N[n] * take->force_near_N[n];
+    for (auto n = static_cast<std::size_t>(from_s * 128e3); n < static_cast<std::size_t>((from_s + 0.01) * 128e3); ++n)
+      sum += take->force_near_N[n] * take->force_near_N[n];
     return sum;
   };
   for (std::size_t n = 3900; n < take->size(); ++n) CHECK(std::abs(take->contact_force_N[n]) < 1e-12);
@@ -173,26 +175,33 @@ TEST_CASE("lifted, the rod leaves a string that rings freely, and what it did be
   CHECK(std::abs(take->energy->string_error()) < 1e-10);
 }
 
-TEST_CASE("a rod that travels: standing still it is the fixed one; on its way energy still adds up, and the pattern of slips goes with it") {
+TEST_CASE(
+    "a rod that travels: standing still it is the fixed one; on its way energy still adds up, and the pattern of slips goes with "
+    "it") {
   struct travelling : rosin::steady_rod {
     double from = 0.3, to = 0.3;
     [[nodiscard]] bool travels() const noexcept { return true; }
-    [[nodiscard]] double position(double t) const noexcept { return from + (to - from) * std::clamp((t - 0.02) / 0.04, 0.0, 1.0); }
+    [[nodiscard]] double position(double t) const noexcept {
+      return from + (to - from) * std::clamp((t - 0.02) / 0.04, 0.0, 1.0);
+    }
   };
   const rosin::steady_rod steady{.start_s = 0.001, .rise_s = 0.004};
   const auto fixed = rosin::simulate_stroke(e_rig(), curve_law{}, steady, {.position = 0.3, .duration_s = 0.003}, quick);
-  const auto stays = rosin::simulate_stroke(e_rig(), curve_law{}, travelling{steady}, {.position = 0.9, .duration_s = 0.003}, quick);
+  const auto stays =
+      rosin::simulate_stroke(e_rig(), curve_law{}, travelling{steady}, {.position = 0.9, .duration_s = 0.003}, quick);
   REQUIRE(stays);
   CHECK(difference(fixed->force_near_N, stays->force_near_N) < 1e-6);
   CHECK(difference(fixed->centre_velocity_m_s, stays->centre_velocity_m_s) < 1e-6);
-  const auto moves = rosin::simulate_stroke(e_rig(), curve_law{}, travelling{steady, 0.3, 0.2}, {.duration_s = 0.09, .account = true}, quick);
+  const auto moves =
+      rosin::simulate_stroke(e_rig(), curve_law{}, travelling{steady, 0.3, 0.2}, {.duration_s = 0.09, .account = true}, quick);
   REQUIRE(moves);
   CHECK(std::abs(moves->energy->string_error()) < 1e-10);
   CHECK(std::abs(moves->energy->error()) < 3e-3);
   // Force and velocity at the place where the rod is then, from the forces on the ends: the balance of the lever, slowly.
   const auto share = [&](double begin_s, double end_s) {
     double near = 0, far = 0;
-    for (auto n = static_cast<std::size_t>(begin_s * 128e3); n < static_cast<std::size_t>(end_s * 128e3); ++n) near += moves->force_near_N[n], far += moves->force_far_N[n];
+    for (auto n = static_cast<std::size_t>(begin_s * 128e3); n < static_cast<std::size_t>(end_s * 128e3); ++n)
+      near += moves->force_near_N[n], far += moves->force_far_N[n];
     return far / (near + far);
   };
   CHECK(share(0.01, 0.02) == doctest::Approx(0.3).epsilon(0.01));

@@ -32,7 +32,8 @@ TEST_CASE("a mode rings with its frequency and decay, and its displacement is th
   rosin::driven_mode mode{body, h};
   mode.advance(1);  // half a triangle
   mode.advance(0);
-  const double damping = body.omega_rad_s * body.inverse_quality / 2, ringing = std::sqrt(body.omega_rad_s * body.omega_rad_s - damping * damping);
+  const double damping = body.omega_rad_s * body.inverse_quality / 2,
+               ringing = std::sqrt(body.omega_rad_s * body.omega_rad_s - damping * damping);
   auto before = mode.advance(0);
   const auto first = before;
   double worst_ring = 0, worst_sum = 0, largest = 0, sum = first.displacement;
@@ -40,7 +41,8 @@ TEST_CASE("a mode rings with its frequency and decay, and its displacement is th
     const auto now = mode.advance(0);
     const double t = n * h, decay = std::exp(-damping * t);
     // From displacement and velocity at one time, the textbook's free motion.
-    const double expected = decay * (first.displacement * std::cos(ringing * t) + (first.velocity + damping * first.displacement) / ringing * std::sin(ringing * t));
+    const double expected = decay * (first.displacement * std::cos(ringing * t) +
+                                     (first.velocity + damping * first.displacement) / ringing * std::sin(ringing * t));
     worst_ring = std::max(worst_ring, std::abs(now.displacement - expected));
     sum += 0.5 * h * (before.velocity + now.velocity);
     worst_sum = std::max(worst_sum, std::abs(sum - now.displacement));

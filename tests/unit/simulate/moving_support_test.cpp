@@ -12,7 +12,9 @@ namespace {
 constexpr double step_s = 1 / 1024e3, pi = 3.14159265358979323846;
 const rosin::yielding_support low{0.004, 700, 20}, high{0.0015, 5200, 8};
 
-rosin::driven_mode exact(const rosin::yielding_support& s) { return {{1, 2 * pi * s.frequency_Hz, 1 / s.quality, s.mass_kg, 0}, step_s}; }
+rosin::driven_mode exact(const rosin::yielding_support& s) {
+  return {{1, 2 * pi * s.frequency_Hz, 1 / s.quality, s.mass_kg, 0}, step_s};
+}
 
 }  // namespace
 
@@ -26,7 +28,7 @@ TEST_CASE("modes of an end under one force move as each would by itself, exactly
     const double before = end.sum(&rosin::moving_mode::v), g0 = end.sum(&rosin::moving_mode::g);
     end.move(step_s, force);
     const double g = end.sum(&rosin::moving_mode::g), v = end.sum(&rosin::moving_mode::v);
-    CHECK(std::abs(inertia * g + force - held) < 1e-9);                  // the equation that the string solves
+    CHECK(std::abs(inertia * g + force - held) < 1e-9);  // the equation that the string solves
     CHECK(std::abs(v - (before - step_s * (g0 + g) / 2)) < 1e-15);
     const double truth = first.advance(force).velocity + second.advance(force).velocity;
     off += std::pow(v - truth, 2), all += truth * truth;

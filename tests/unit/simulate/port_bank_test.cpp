@@ -7,7 +7,10 @@
 
 namespace {
 
-const rosin::modal_rig rig{{.length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}}, {}, rosin::damping_convention::kelvin_voigt};
+const rosin::modal_rig rig{
+    {.length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}},
+    {},
+    rosin::damping_convention::kelvin_voigt};
 constexpr double step_s = 1 / 512e3;
 
 }  // namespace
@@ -25,7 +28,8 @@ TEST_CASE("with point ports alone it does what modal_bank does, step by step") {
   for (int n = 0; n < 300; ++n) {
     const Eigen::Vector2d force(normal(random), normal(random));
     bank.read_free(velocity, end);
-    for (Eigen::Index i = 0; i < 2; ++i) CHECK(velocity[i] == doctest::Approx(peer.free().velocity[static_cast<std::size_t>(i)]).epsilon(1e-9));
+    for (Eigen::Index i = 0; i < 2; ++i)
+      CHECK(velocity[i] == doctest::Approx(peer.free().velocity[static_cast<std::size_t>(i)]).epsilon(1e-9));
     CHECK(end[0] == doctest::Approx(peer.free().near).epsilon(1e-9));
     CHECK(end[1] == doctest::Approx(peer.free().far).epsilon(1e-9));
     bank.advance(force);

@@ -71,14 +71,20 @@ TEST_CASE("names") {
 }
 
 TEST_CASE("a string bowed as a player would settles into Helmholtz motion, and a rod hardly pressed does not") {
-  const rosin::modal_rig rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 500}},
+  const rosin::modal_rig rig{.string = {.length_m = 0.314,
+                                        .tension_N = 72.5,
+                                        .fundamental_Hz = 660,
+                                        .bending_stiffness_Nm2 = 4.7e-5,
+                                        .loss = {.quality = 500}},
                              .torsion = {7, 3.5, 15}};
   const auto bowed = [&](double normal_N) {
     const rosin::profiled_rod rod{{}, {{0, 0}, {0.02, 0.1}}, {{0, normal_N}}};
-    const auto take = rosin::simulate_wave_stroke(rig, rosin::velocity_curve{rosin::two_exponential_curve<>{}}, rod, {0.11, 0.12}, {.sample_rate_Hz = 64000, .oversampling = 4});
+    const auto take = rosin::simulate_wave_stroke(rig, rosin::velocity_curve{rosin::two_exponential_curve<>{}}, rod, {0.11, 0.12},
+                                                  {.sample_rate_Hz = 64000, .oversampling = 4});
     REQUIRE_MESSAGE(take, take.error());
     std::vector<double> slip(take->size());
-    for (std::size_t n = 0; n < slip.size(); ++n) slip[n] = take->centre_velocity_m_s[n] + take->torsion_velocity_m_s[n] - take->rod_velocity_m_s[n];
+    for (std::size_t n = 0; n < slip.size(); ++n)
+      slip[n] = take->centre_velocity_m_s[n] + take->torsion_velocity_m_s[n] - take->rod_velocity_m_s[n];
     return rosin::classify(slip, take->rod_velocity_m_s, 64000, 660);
   };
   const auto firm = bowed(0.2), faint = bowed(0.02);

@@ -45,7 +45,8 @@ TEST_CASE("where a contact that sticks would make the string grow the kernels ar
   const auto design = rosin::design_travelling_wave(string, {0.03, 0.05}, {.oversampling = 8});
   REQUIRE_MESSAGE(design, design.error());
   const double period = 1 / (660 * design->kernels.step_s);
-  for (const double position : {0.03, 0.0417, 0.05}) CHECK(rosin::detail::largest_stuck_gain(design->kernels, position, period) < 1);
+  for (const double position : {0.03, 0.0417, 0.05})
+    CHECK(rosin::detail::largest_stuck_gain(design->kernels, position, period) < 1);
 }
 
 TEST_CASE("ways off the string, too near an end, and ends that a rate cannot hold are refused with the reason") {
@@ -57,5 +58,6 @@ TEST_CASE("ways off the string, too near an end, and ends that a rate cannot hol
   CHECK(rosin::design_travelling_wave(low, {0.1, 0.9}).error().find("too long") != std::string::npos);
   std::array<rosin::modal_termination, 2> ends{};
   ends[1].modes = {{.frequency_Hz = 480e3, .q = 10, .per_mass_per_s = 1}};
-  CHECK(rosin::design_travelling_wave(rig, {0.1, 0.2}, {.oversampling = 2}, ends).error().find("termination") != std::string::npos);
+  CHECK(rosin::design_travelling_wave(rig, {0.1, 0.2}, {.oversampling = 2}, ends).error().find("termination") !=
+        std::string::npos);
 }

@@ -26,7 +26,8 @@ TEST_CASE("a force that stays while the contact travels holds the string where i
   for (int n = 0; n < steps; ++n) {
     const double x = 0.2 + 0.1 * std::min(1.0, 2.0 * n / steps);
     waves.move_to(x);
-    const double slope = x < 0.3 ? 0.1 * 2 / 0.5 * string.string.length_m * ((1 - x) - x) / 2 / string.string.tension_N : 0;  // the contact goes on along a string that is bent at it: mean of both sides
+    const double slope = x < 0.3 ? 0.1 * 2 / 0.5 * string.string.length_m * ((1 - x) - x) / 2 / string.string.tension_N
+                                 : 0;  // the contact goes on along a string that is bent at it: mean of both sides
     place += (waves.apply(1).centre_m_s + slope) * step_s;
   }
   CHECK(place == doctest::Approx(rosin::static_compliance_m_N(string.string, 0.3)).epsilon(0.02));
@@ -37,7 +38,8 @@ TEST_CASE("what the ends hear adds up to the force that stays, shared as on a le
   const auto design = rosin::design_travelling_wave(string, {0.2, 0.3}, {.oversampling = 2, .band_Hz = 40e3});
   REQUIRE(design);
   rosin::travelling_string<double> waves{*design, 0.2};
-  const int steps = static_cast<int>(0.6 / design->kernels.step_s), period = static_cast<int>(std::lround(1 / (660 * design->kernels.step_s)));
+  const int steps = static_cast<int>(0.6 / design->kernels.step_s),
+            period = static_cast<int>(std::lround(1 / (660 * design->kernels.step_s)));
   std::array<double, 2> mean{};
   for (int n = 0; n < steps; ++n) {
     waves.move_to(0.2 + 0.08 * std::min(1.0, 2.0 * n / steps));
@@ -103,7 +105,8 @@ TEST_CASE("in single precision the same motion") {
   for (int n = 0; n < 4000; ++n) {
     const double x = 0.2 + 0.02 * n / 4000, force = std::sin(0.02 * n);
     exact.move_to(x), single.move_to(x);
-    CHECK(static_cast<double>(single.line({}).free_velocity_m_s) == doctest::Approx(exact.line({}).free_velocity_m_s).epsilon(1e-4).scale(1));
+    CHECK(static_cast<double>(single.line({}).free_velocity_m_s) ==
+          doctest::Approx(exact.line({}).free_velocity_m_s).epsilon(1e-4).scale(1));
     exact.apply(force), single.apply(static_cast<float>(force));
   }
 }

@@ -15,8 +15,11 @@ rosin::outcome<rosin::wave_loop> design(double position, double quality) {
   auto string = e_string;
   string.loss.quality = quality;
   const std::array<double, 2> delay{position / 660, (1 - position) / 660};
-  const rosin::echo_plan plan{delay, string.stiffness_s2(), {50e3, 110e3}, 256e3, 1, rosin::poles_of(rosin::transverse_modes(string, 50e3))};
-  return rosin::design_loop(plan, [&](std::size_t j) { return rosin::pinned_echo{{delay[j], string.stiffness_s2(), string.loss}, 660}; });
+  const rosin::echo_plan plan{
+      delay, string.stiffness_s2(), {50e3, 110e3}, 256e3, 1, rosin::poles_of(rosin::transverse_modes(string, 50e3))};
+  return rosin::design_loop(plan, [&](std::size_t j) {
+    return rosin::pinned_echo{{delay[j], string.stiffness_s2(), string.loss}, 660};
+  });
 }
 
 }  // namespace
@@ -50,6 +53,8 @@ TEST_CASE("each echo alone is that of a passage there and back") {
 TEST_CASE("an end that is too near is refused") {
   const std::array<double, 2> delay{0.001 / 660, 0.999 / 660};
   const rosin::echo_plan plan{delay, e_string.stiffness_s2(), {50e3, 110e3}, 256e3, 40, {}};
-  const auto loop = rosin::design_loop(plan, [&](std::size_t j) { return rosin::pinned_echo{{delay[j], e_string.stiffness_s2(), {}}, 660}; });
+  const auto loop = rosin::design_loop(plan, [&](std::size_t j) {
+    return rosin::pinned_echo{{delay[j], e_string.stiffness_s2(), {}}, 660};
+  });
   CHECK_FALSE(loop);
 }

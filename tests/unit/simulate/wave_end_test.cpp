@@ -11,7 +11,8 @@ const rosin::modal_termination bridge{{{460, 30, 1.8}, {2400, 12, 45}, {5100, 8,
 /// Response of a run of the end at a frequency, once it has forgotten its beginning.
 std::complex<double> response(rosin::wave_end end, double frequency_Hz, bool of_force) {
   const std::complex<double> turn(0, 2 * pi * frequency_Hz / rate_Hz);
-  const int settle = 80000, periods = static_cast<int>(std::lround(200 * frequency_Hz / 1000)), count = static_cast<int>(std::lround(periods * rate_Hz / frequency_Hz));
+  const int settle = 80000, periods = static_cast<int>(std::lround(200 * frequency_Hz / 1000)),
+            count = static_cast<int>(std::lround(periods * rate_Hz / frequency_Hz));
   std::complex<double> out = 0;
   for (int n = 0; n < settle + count; ++n) {
     const auto now = end(std::cos(turn.imag() * n));

@@ -9,7 +9,8 @@
 
 namespace {
 
-const rosin::string_parameters e_string{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5};
+const rosin::string_parameters e_string{
+    .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5};
 
 }  // namespace
 

@@ -23,7 +23,8 @@ const rosin::wave_settings settings{.pass_Hz = 20e3, .stop_Hz = 30e3};
 TEST_CASE("a pluck by waves is one by modes: let go at once, between two steps, and over a while") {
   for (const double release_duration_s : {0.0, 2e-4}) {
     CAPTURE(release_duration_s);
-    const rosin::modal_pluck pluck{.position = 0.27, .force_N = 0.8, .release_s = 0.0040003, .release_duration_s = release_duration_s, .duration_s = 0.03};
+    const rosin::modal_pluck pluck{
+        .position = 0.27, .force_N = 0.8, .release_s = 0.0040003, .release_duration_s = release_duration_s, .duration_s = 0.03};
     const auto modes = rosin::simulate_pluck(plain_rig(), pluck, settings.as_modal());
     const auto waves = rosin::simulate_wave_pluck(test::violin_e_string, pluck, settings);  // its torsion stays out of it
     REQUIRE(modes);
@@ -45,7 +46,8 @@ TEST_CASE("on ends that move the wire's force is shared as they give way, and th
   burden.string.ends[0].modes = {{460, 30, z / 0.1}, {2400, 12, z / 0.004}};
   burden.string.ends[1].modes = {{700, 20, z / 0.05}};
   const rosin::modal_pluck pluck{.position = 0.3, .force_N = 1, .release_s = 0.004, .duration_s = 0.02};
-  const auto modes = rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = 1, .release_s = 0.004, .duration_s = 0.02}, settings.as_modal());
+  const auto modes = rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = 1, .release_s = 0.004, .duration_s = 0.02},
+                                           settings.as_modal());
   const auto waves = rosin::simulate_wave_pluck(rig, pluck, settings, burden.string.ends);
   REQUIRE_MESSAGE(modes, modes.error());
   REQUIRE_MESSAGE(waves, waves.error());

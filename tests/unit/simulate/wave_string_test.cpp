@@ -14,7 +14,8 @@ rosin::wave_kernels<double> ideal(std::ptrdiff_t near, std::ptrdiff_t far, std::
   rosin::wave_kernels<double> k;
   k.step_s = step_s;
   k.block = block;
-  k.echo = {rosin::wave_taps<double>{rosin::fir{static_cast<int>(near), {-1}}}, rosin::wave_taps<double>{rosin::fir{static_cast<int>(far), {-1}}}};
+  k.echo = {rosin::wave_taps<double>{rosin::fir{static_cast<int>(near), {-1}}},
+            rosin::wave_taps<double>{rosin::fir{static_cast<int>(far), {-1}}}};
   k.fill = {rosin::wave_taps<double>{rosin::fir{0, {1 / (2 * Z)}}}};
   k.local = {1 / (2 * Z)};
   return k;
@@ -24,7 +25,8 @@ rosin::wave_kernels<double> ideal(std::ptrdiff_t near, std::ptrdiff_t far, std::
 double energy_J(const rosin::wave_string<double>& string) {
   double sum = 0;
   for (std::size_t j = 0; j < 2; ++j)
-    for (std::ptrdiff_t k = 1; k <= string.kernels().echo[j].first; ++k) sum += std::pow(string.wave(j, string.waves() - k) / (2 * Z), 2);
+    for (std::ptrdiff_t k = 1; k <= string.kernels().echo[j].first; ++k)
+      sum += std::pow(string.wave(j, string.waves() - k) / (2 * Z), 2);
   return Z * step_s * sum;
 }
 
@@ -80,7 +82,8 @@ TEST_CASE("block sums are those of the definition") {
   const rosin::wave_taps<double> kernel{rosin::fir{2, {1, -0.5, 0.25, 3, 0.125}}};
   rosin::detail::add_filtered(kernel, in.data() + 20, out.data(), 21);
   for (std::size_t i = 0; i < out.size(); ++i)
-    CHECK(out[i] == doctest::Approx(0.5 + in[18 + i] - 0.5 * in[17 + i] + 0.25 * in[16 + i] + 3 * in[15 + i] + 0.125 * in[14 + i]));
+    CHECK(out[i] ==
+          doctest::Approx(0.5 + in[18 + i] - 0.5 * in[17 + i] + 0.25 * in[16 + i] + 3 * in[15 + i] + 0.125 * in[14 + i]));
   const rosin::wave_taps<double> even{rosin::fir{-4, {1, 2, 3, 4, 5, 4, 3, 2, 1}}};
   rosin::detail::add_thinned(even, in.data() + 10, 3, thin.data(), 5);
   for (std::size_t i = 0; i < thin.size(); ++i) {

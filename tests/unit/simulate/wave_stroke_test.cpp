@@ -51,7 +51,8 @@ TEST_CASE("under a given force the string moves, and pulls at its ends, as its m
 
 TEST_CASE("the whole model's balance of energy, by the modes under the force that the waves found") {
   const rosin::velocity_curve law{rosin::two_exponential_curve<>{}};
-  const auto take = rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{.start_s = 0.001}, {.position = 0.2, .duration_s = 0.04, .account = true}, {.oversampling = 4});
+  const auto take = rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{.start_s = 0.001},
+                                                {.position = 0.2, .duration_s = 0.04, .account = true}, {.oversampling = 4});
   REQUIRE(take);
   REQUIRE(take->energy);
   CHECK(take->slips > 5);
@@ -62,7 +63,8 @@ TEST_CASE("the whole model's balance of energy, by the modes under the force tha
 
 TEST_CASE("how many steps of the far side are computed together changes nothing, on rigid ends and on those that move") {
   const rosin::wave_settings settings{.sample_rate_Hz = 64e3, .oversampling = 4};
-  const std::array<rosin::modal_termination, 2> moving{rosin::modal_termination{{{1200, 20, 3}}}, rosin::modal_termination{{{460, 30, 2}}}};
+  const std::array<rosin::modal_termination, 2> moving{rosin::modal_termination{{{1200, 20, 3}}},
+                                                       rosin::modal_termination{{{460, 30, 2}}}};
   for (const auto& [position, ends] : {std::pair{0.12, std::array<rosin::modal_termination, 2>{}}, std::pair{0.85, moving}}) {
     const auto design = rosin::design_wave(rig, position, settings, ends);
     REQUIRE(design);
@@ -86,7 +88,8 @@ TEST_CASE("on ends that move the string does what its modes do on them") {
   const rosin::wave_settings settings{.oversampling = 4, .pass_Hz = 20e3, .stop_Hz = 30e3};
   for (const double position : {0.12}) {
     CAPTURE(position);
-    const auto modes = rosin::simulate_stroke(rig, burden, imposed_force{}, rosin::steady_rod{}, {position, 0.012}, settings.as_modal());
+    const auto modes =
+        rosin::simulate_stroke(rig, burden, imposed_force{}, rosin::steady_rod{}, {position, 0.012}, settings.as_modal());
     const auto rigid = rosin::simulate_stroke(rig, imposed_force{}, rosin::steady_rod{}, {position, 0.012}, settings.as_modal());
     const auto design = rosin::design_wave(rig, position, settings, burden.string.ends);
     REQUIRE((modes && rigid));
@@ -102,7 +105,9 @@ TEST_CASE("on ends that move the string does what its modes do on them") {
 }
 
 TEST_CASE("a rod that travels along the string: waves do what the modes do, near an end too, over a short way and a long one") {
-  for (const auto& way : {rosin::profiled_rod::break_points{{0, 0.12}, {0.006, 0.13}, {0.02, 0.1}}, {{0, 0.3}, {0.02, 0.2}}, {{0, 0.9}, {0.02, 0.86}}}) {
+  for (const auto& way : {rosin::profiled_rod::break_points{{0, 0.12}, {0.006, 0.13}, {0.02, 0.1}},
+                          {{0, 0.3}, {0.02, 0.2}},
+                          {{0, 0.9}, {0.02, 0.86}}}) {
     CAPTURE(way[0].second);
     const rosin::profiled_rod rod{{}, {}, {}, way};
     const rosin::wave_settings settings{.oversampling = 4, .pass_Hz = 20e3, .stop_Hz = 30e3};
@@ -122,12 +127,18 @@ TEST_CASE("a rod that travels along the string: waves do what the modes do, near
 TEST_CASE("strings without stiffness and with much loss do what their modes do, too") {
   for (const auto& like : {std::pair{100.0, 0.0}, {700.0, 0.0}, {100.0, 4e-5}}) {
     CAPTURE(like.first);
-    const rosin::modal_rig string{
-        .string = {.length_m = 0.65, .tension_N = 70, .fundamental_Hz = 196, .bending_stiffness_Nm2 = like.second, .loss = {.quality = like.first}}};
-    const rosin::wave_settings settings{.sample_rate_Hz = 48e3, .oversampling = 8, .band_Hz = 60e3, .pass_Hz = 15e3, .stop_Hz = 22e3};
-    const auto modes = rosin::simulate_stroke(string, imposed_force{}, rosin::steady_rod{}, {0.2, 0.04}, settings.as_modal(150e3));
+    const rosin::modal_rig string{.string = {.length_m = 0.65,
+                                             .tension_N = 70,
+                                             .fundamental_Hz = 196,
+                                             .bending_stiffness_Nm2 = like.second,
+                                             .loss = {.quality = like.first}}};
+    const rosin::wave_settings settings{
+        .sample_rate_Hz = 48e3, .oversampling = 8, .band_Hz = 60e3, .pass_Hz = 15e3, .stop_Hz = 22e3};
+    const auto modes =
+        rosin::simulate_stroke(string, imposed_force{}, rosin::steady_rod{}, {0.2, 0.04}, settings.as_modal(150e3));
     const auto waves = rosin::simulate_wave_stroke(string, imposed_force{}, rosin::steady_rod{}, {0.2, 0.04}, settings);
-    const auto travels = rosin::simulate_wave_stroke(string, imposed_force{}, rosin::profiled_rod{{}, {}, {}, {{0, 0.2}}}, {.duration_s = 0.04}, settings);
+    const auto travels = rosin::simulate_wave_stroke(string, imposed_force{}, rosin::profiled_rod{{}, {}, {}, {{0, 0.2}}},
+                                                     {.duration_s = 0.04}, settings);
     REQUIRE(modes);
     REQUIRE_MESSAGE(waves, waves.error());
     REQUIRE_MESSAGE(travels, travels.error());
@@ -138,11 +149,13 @@ TEST_CASE("strings without stiffness and with much loss do what their modes do, 
 
 TEST_CASE("on ends that move a contact that could travel but stays does what one that stays does") {
   const double z = rig.string.impedance_Ns_m();
-  const std::array<rosin::modal_termination, 2> ends{rosin::modal_termination{{{460, 30, z / 0.1}, {2400, 12, z / 0.004}}}, rosin::modal_termination{{{7000, 20, z / 0.01}}}};
+  const std::array<rosin::modal_termination, 2> ends{rosin::modal_termination{{{460, 30, z / 0.1}, {2400, 12, z / 0.004}}},
+                                                     rosin::modal_termination{{{7000, 20, z / 0.01}}}};
   const rosin::wave_settings settings{.oversampling = 4, .pass_Hz = 20e3, .stop_Hz = 30e3};
   const auto design = rosin::design_travelling_wave(rig, {0.1, 0.14}, settings, ends);
   REQUIRE_MESSAGE(design, design.error());
-  const auto travels = rosin::simulate_wave_stroke(*design, rig, imposed_force{}, rosin::profiled_rod{{}, {}, {}, {{0, 0.12}}}, 0.012, settings);
+  const auto travels =
+      rosin::simulate_wave_stroke(*design, rig, imposed_force{}, rosin::profiled_rod{{}, {}, {}, {{0, 0.12}}}, 0.012, settings);
   const auto stays = rosin::simulate_wave_stroke(rig, imposed_force{}, rosin::steady_rod{}, {0.12, 0.012}, settings, ends);
   REQUIRE((travels && stays));
   CHECK(test::apart(travels->centre_velocity_m_s, stays->centre_velocity_m_s) < 2e-3);
@@ -173,14 +186,23 @@ TEST_CASE("kernels of one place do not serve a rod that travels, nor those of a 
   const auto way = rosin::design_travelling_wave(rig, {0.2, 0.21}, settings);
   REQUIRE((place && way));
   const rosin::velocity_curve law{rosin::two_exponential_curve<double>{}};
-  CHECK(rosin::simulate_wave_stroke(*place, rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.2}}}, 0.01, settings).error().find("travels") != std::string::npos);
-  CHECK(rosin::simulate_wave_stroke(*way, rig, law, rosin::profiled_rod{}, 0.01, settings).error().find("stays") != std::string::npos);
-  CHECK(rosin::simulate_wave_stroke(rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.9}, {0.01, 1.1}}}, {.duration_s = 0.01}, settings).error().find("position") != std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(*place, rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.2}}}, 0.01, settings)
+            .error()
+            .find("travels") != std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(*way, rig, law, rosin::profiled_rod{}, 0.01, settings).error().find("stays") !=
+        std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.9}, {0.01, 1.1}}}, {.duration_s = 0.01},
+                                    settings)
+            .error()
+            .find("position") != std::string::npos);
   const rosin::profiled_rod moves{{}, {}, {}, {{0, 0.2}, {0.01, 0.21}}};
   for (const double duration_s : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
-    CHECK(rosin::simulate_wave_stroke(rig, law, moves, {.duration_s = duration_s}, settings).error().find("must last") != std::string::npos);
-  CHECK(rosin::simulate_wave_stroke(rig, law, moves, {.duration_s = 0.01}, {.sample_rate_Hz = -1}).error().find("sample rate") != std::string::npos);
-  CHECK(rosin::simulate_wave_stroke(rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.3}, {0.01, 0.29}, {0.018, 1.1}}}, {.duration_s = 0.01}, settings));  // it leaves the string after the take
+    CHECK(rosin::simulate_wave_stroke(rig, law, moves, {.duration_s = duration_s}, settings).error().find("must last") !=
+          std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(rig, law, moves, {.duration_s = 0.01}, {.sample_rate_Hz = -1}).error().find("sample rate") !=
+        std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(rig, law, rosin::profiled_rod{{}, {}, {}, {{0, 0.3}, {0.01, 0.29}, {0.018, 1.1}}},
+                                    {.duration_s = 0.01}, settings));  // it leaves the string after the take
 }
 
 TEST_CASE("a bowed string on a body: waves and modes agree until the smallest difference has grown") {
@@ -205,8 +227,10 @@ TEST_CASE("a bowed string on a body: waves and modes agree until the smallest di
 TEST_CASE("a stroke in single precision follows the one in double") {
   const rosin::profiled_rod rod{{}, {{0, 0}, {0.005, 0.2}}, {{0, 0.2}}};
   const rosin::wave_settings settings{.sample_rate_Hz = 64000, .oversampling = 4};
-  const auto exact = rosin::simulate_wave_stroke<double>(rig, rosin::velocity_curve{rosin::two_exponential_curve<double>{}}, rod, {0.3, 0.005}, settings);
-  const auto single = rosin::simulate_wave_stroke<float>(rig, rosin::velocity_curve{rosin::two_exponential_curve<float>{}}, rod, {0.3, 0.005}, settings);
+  const auto exact = rosin::simulate_wave_stroke<double>(rig, rosin::velocity_curve{rosin::two_exponential_curve<double>{}}, rod,
+                                                         {0.3, 0.005}, settings);
+  const auto single = rosin::simulate_wave_stroke<float>(rig, rosin::velocity_curve{rosin::two_exponential_curve<float>{}}, rod,
+                                                         {0.3, 0.005}, settings);
   REQUIRE(exact);
   REQUIRE(single);
   CHECK(exact->unconverged == 0);
@@ -218,7 +242,8 @@ TEST_CASE("what makes no sense is refused; a rod off the string does nothing") {
   const rosin::velocity_curve law{rosin::two_exponential_curve<>{}};
   CHECK_FALSE(rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{}, {0.3, -1}));
   CHECK_FALSE(rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{}, {1.0, 0.1}));
-  const auto still = rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{.normal_force_N = 0}, {0.3, 0.005}, {.oversampling = 1});
+  const auto still =
+      rosin::simulate_wave_stroke(rig, law, rosin::steady_rod{.normal_force_N = 0}, {0.3, 0.005}, {.oversampling = 1});
   REQUIRE(still);
   for (const double f : still->force_near_N) CHECK(f == 0);
 }
@@ -231,5 +256,7 @@ TEST_CASE("a string whose velocity has no bound is reported, not returned") {
     }
     void reset() noexcept {}
   };
-  CHECK(rosin::simulate_wave_stroke(rig, pump{}, rosin::steady_rod{}, {0.3, 0.1}, {.oversampling = 1}).error().find("without bound") != std::string::npos);
+  CHECK(rosin::simulate_wave_stroke(rig, pump{}, rosin::steady_rod{}, {0.3, 0.1}, {.oversampling = 1})
+            .error()
+            .find("without bound") != std::string::npos);
 }

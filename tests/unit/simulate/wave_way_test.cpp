@@ -43,7 +43,8 @@ TEST_CASE("anywhere on the way, between the rows too, a wave comes late, spread 
     for (const double f : {0.0, 700.0, 3e3, 9e3, 2e4, 5e4, 8.9e4}) {
       CAPTURE(f);
       const double w = 2 * std::numbers::pi * f;
-      const auto pass = -rosin::pinned_echo{{distance / (2 * string.fundamental_Hz), string.stiffness_s2(), string.loss}, string.fundamental_Hz}(f);
+      const auto pass = -rosin::pinned_echo{{distance / (2 * string.fundamental_Hz), string.stiffness_s2(), string.loss},
+                                            string.fundamental_Hz}(f);
       CHECK(std::abs(response(to_end, f) - pass) < (f < 3e4 ? 6e-4 : 4e-3));
       const double mobility = rosin::wave_mobility(string, w) * rosin::straight_line_weight(w, 1 / rate_Hz);
       CHECK(std::abs(response(back, f) - pass * mobility) < (f < 3e4 ? 6e-4 : 4e-3) * rosin::wave_mobility(string, 0));
@@ -56,7 +57,8 @@ TEST_CASE("beyond the way a contact is at its end, and what does not change is l
   CHECK(way.first() >= 1);
   for (const double distance : {0.02, 0.11}) CHECK(scattered(way, distance) == scattered(way, 0.11));
   CHECK(scattered(way, 0.7) == scattered(way, 0.5));
-  for (const double distance : {0.11, 0.1234, 0.15}) CHECK(response(scattered(way, distance), 0).real() == doctest::Approx(1).epsilon(1e-12));
+  for (const double distance : {0.11, 0.1234, 0.15})
+    CHECK(response(scattered(way, distance), 0).real() == doctest::Approx(1).epsilon(1e-12));
   CHECK(rosin::wave_way<double>{}.empty());
 }
 
@@ -66,5 +68,6 @@ TEST_CASE("in single precision the same kernels") {
   std::vector<float> out(static_cast<std::size_t>(way.last()) + 1, 0.0F);
   single.to_end(0.1301).scatter(1.0F, out.data());
   const auto exact = scattered(way, 0.1301);
-  for (std::size_t i = 0; i < out.size(); ++i) CHECK(static_cast<double>(out[i]) == doctest::Approx(exact[i]).epsilon(1e-5).scale(0.1));
+  for (std::size_t i = 0; i < out.size(); ++i)
+    CHECK(static_cast<double>(out[i]) == doctest::Approx(exact[i]).epsilon(1e-5).scale(0.1));
 }

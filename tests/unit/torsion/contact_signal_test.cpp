@@ -28,7 +28,8 @@ TEST_CASE("contact signal: the window alone is 1 at 0 Hz, and a tone is scaled b
 
 TEST_CASE("contact signal: a derivative") {
   rosin::contact_signal signal(tone(5000, 1000), rate);
-  const auto y = signal.through(rosin::smooth_window{1e6}, [](double f) { return std::complex<double>(0, 2 * std::numbers::pi * f); });
+  const auto y =
+      signal.through(rosin::smooth_window{1e6}, [](double f) { return std::complex<double>(0, 2 * std::numbers::pi * f); });
   for (std::size_t i = 500; i < 4500; ++i) {
     const double exact = -2e3 * std::numbers::pi * std::sin(2e3 * std::numbers::pi * static_cast<double>(i) / rate);
     CHECK(std::abs(y[i] - exact) < 60.0);  // the record's edges reach in a little

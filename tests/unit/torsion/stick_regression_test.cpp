@@ -53,7 +53,8 @@ TEST_CASE("stick regression: slips among the rows hardly count") {
 
 TEST_CASE("stick regression: correlated rows count for less") {
   std::mt19937 source(3);
-  const auto apart = rosin::stick_regression({rows(source, 0, 4000, 1, 0)}), held = rosin::stick_regression({rows(source, 0, 4000, 10, 0)});
+  const auto apart = rosin::stick_regression({rows(source, 0, 4000, 1, 0)}),
+             held = rosin::stick_regression({rows(source, 0, 4000, 10, 0)});
   CHECK(held.effective < 0.2 * apart.effective);
   CHECK(held.effective > 0.04 * held.rows);
 }

@@ -12,7 +12,8 @@
 namespace {
 
 constexpr double rate = 128e3;
-const rosin::string_parameters e_string{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
+const rosin::string_parameters e_string{
+    .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
 
 struct reconstructed {
   std::vector<double> force, velocity;
@@ -20,13 +21,16 @@ struct reconstructed {
 };
 
 /// A stroke as two 16-bit converters hear it, brought back to the bow.
-reconstructed stroke(const rosin::modal_torsion& torsion, double position, double speed, double normal, double noise_N, std::uint64_t seed) {
-  const auto take = rosin::simulate_stroke({.string = e_string, .torsion = torsion}, rosin::velocity_curve{rosin::two_exponential_curve<>{}},
-                                           rosin::steady_rod{.speed_m_s = speed, .normal_force_N = normal, .start_s = 0.002, .rise_s = 0.005},
-                                           {.position = position, .duration_s = 0.09}, {.oversampling = 4});
+reconstructed stroke(const rosin::modal_torsion& torsion, double position, double speed, double normal, double noise_N,
+                     std::uint64_t seed) {
+  const auto take =
+      rosin::simulate_stroke({.string = e_string, .torsion = torsion}, rosin::velocity_curve{rosin::two_exponential_curve<>{}},
+                             rosin::steady_rod{.speed_m_s = speed, .normal_force_N = normal, .start_s = 0.002, .rise_s = 0.005},
+                             {.position = position, .duration_s = 0.09}, {.oversampling = 4});
   REQUIRE(take);
   const rosin::converter sensor{.gain = 1, .newtons_per_full_scale = 2, .noise_N = noise_N, .bits = 16};
-  const auto near = rosin::convert(take->force_near_N, rate, sensor, seed), far = rosin::convert(take->force_far_N, rate, sensor, seed + 1);
+  const auto near = rosin::convert(take->force_near_N, rate, sensor, seed),
+             far = rosin::convert(take->force_far_N, rate, sensor, seed + 1);
   rosin::reconstructor<double> reconstruct(rosin::contact_at(e_string, position), {38400, 57600}, rate, 1e-5);
   const auto motion = reconstruct(near.newtons(), far.newtons());
   reconstructed r{std::vector<double>(take->size()), std::vector<double>(take->size()), speed};
@@ -37,16 +41,21 @@ reconstructed stroke(const rosin::modal_torsion& torsion, double position, doubl
 std::vector<rosin::stick_take> takes_of(const std::vector<reconstructed>& strokes, double position) {
   const auto at = rosin::contact_at(e_string, position);
   std::vector<rosin::stick_take> takes;
-  for (const auto& s : strokes) takes.push_back({s.force, s.velocity, rate, s.speed, at.delay_s, at.impedance_Ns_m, 1e-3, 57600, 0.02});
+  for (const auto& s : strokes)
+    takes.push_back({s.force, s.velocity, rate, s.speed, at.delay_s, at.impedance_Ns_m, 1e-3, 57600, 0.02});
   return takes;
 }
 
 }  // namespace
 
 TEST_CASE("torsion fit: speed to 1 %, impedance to 5 %, Q to 20 %, without being told where to look, and honest errors") {
-  struct { rosin::modal_torsion torsion; double position; } cases[] = {{{7.0, 3.5, 15}, 0.3}, {{6.2, 4.0, 40}, 0.17}};
+  struct {
+    rosin::modal_torsion torsion;
+    double position;
+  } cases[] = {{{7.0, 3.5, 15}, 0.3}, {{6.2, 4.0, 40}, 0.17}};
   for (const auto& c : cases) {
-    const std::vector<reconstructed> strokes{stroke(c.torsion, c.position, 0.2, 0.3, 0.4e-3, 7), stroke(c.torsion, c.position, 0.14, 0.4, 0.4e-3, 70)};
+    const std::vector<reconstructed> strokes{stroke(c.torsion, c.position, 0.2, 0.3, 0.4e-3, 7),
+                                             stroke(c.torsion, c.position, 0.14, 0.4, 0.4e-3, 70)};
     const auto fit = rosin::fit_torsion(takes_of(strokes, c.position));
     REQUIRE(fit);
     CHECK(fit->decided());

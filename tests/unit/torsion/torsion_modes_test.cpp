@@ -33,7 +33,8 @@ TEST_CASE("torsion modes: at Q = 15 the conventions agree at the first resonance
 }
 
 TEST_CASE("torsion modes: the oscillators that the simulation steps") {
-  const rosin::string_parameters string{.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
+  const rosin::string_parameters string{
+      .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
   const rosin::modal_rig rig{.string = string, .torsion = {7, 3.5, 15}};
   const auto list = rosin::torsional_modes(rig, 60 * 660 * 7.0 + 1);
   REQUIRE(list.size() == 60);
@@ -50,5 +51,6 @@ TEST_CASE("torsion modes: the oscillators that the simulation steps") {
 TEST_CASE("torsion modes: on a grid of frequencies they are what they are at each of them") {
   const auto modes = at(15);
   const auto grid = modes.on_grid(0.7, 90000);
-  for (std::size_t k = 0; k < grid.size(); k += 97) CHECK(std::abs(grid[k] - modes(0.7 * static_cast<double>(k))) <= 1e-11 * std::abs(grid[k]));
+  for (std::size_t k = 0; k < grid.size(); k += 97)
+    CHECK(std::abs(grid[k] - modes(0.7 * static_cast<double>(k))) <= 1e-11 * std::abs(grid[k]));
 }

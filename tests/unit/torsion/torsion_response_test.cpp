@@ -85,5 +85,6 @@ TEST_CASE("torsion: the record's end does not reach its beginning") {
 TEST_CASE("torsion: on a grid of frequencies it is what it is at each of them") {
   const auto at = e_string(15);
   const auto grid = at.on_grid(0.7, 90000);
-  for (std::size_t k = 0; k < grid.size(); k += 97) CHECK(std::abs(grid[k] - at(0.7 * static_cast<double>(k))) <= 1e-11 * std::abs(grid[k]));
+  for (std::size_t k = 0; k < grid.size(); k += 97)
+    CHECK(std::abs(grid[k] - at(0.7 * static_cast<double>(k))) <= 1e-11 * std::abs(grid[k]));
 }
