@@ -29,6 +29,7 @@ struct options {
   std::uint64_t seed = 1;
   int count = 0, effects = 1;
   double strength = 1, noise_dB = 0;
+  std::vector<double> pitch_Hz;
   bool only_make = false, leave_out = false, forces = false, json = false;
 };
 
@@ -44,6 +45,7 @@ std::string describe(const options& o) {
                     std::to_string(o.effects);
   if (o.strength != 1) out += " --strength " + in_digits(o.strength);
   if (o.noise_dB > 0) out += " --noise-db " + in_digits(o.noise_dB);
+  if (!o.pitch_Hz.empty()) out += " --pitch " + in_digits(o.pitch_Hz[0]) + " " + in_digits(o.pitch_Hz[1]);
   if (o.leave_out) out += " --leave-out";
   return out + (o.effect.empty() ? "`" : " --effect " + o.effect + "`");
 }
@@ -68,7 +70,7 @@ std::optional<rosin::failure> make(const options& given, const places& to, std::
   for (int i = 0; i < given.count; ++i, bar.step()) {
     const std::uint64_t seed = given.seed * 100000 + static_cast<std::uint64_t>(i);
     if (seed % shards != shard) continue;
-    const auto rig = draw_challenge({seed, given.effects, given.strength, given.noise_dB, given.effect});
+    const auto rig = draw_challenge({seed, given.effects, given.strength, given.noise_dB, given.effect, given.pitch_Hz});
     const auto truth = to.truth / (rig.name + ".json");
     if (fs::exists(truth) && (!given.forces || fs::exists(true_forces(to.truth, rig.name, "bow-1")))) continue;
     if (auto why = write_challenge(rig, to.rigs / rig.name, true, given.forces ? to.truth : fs::path{})) return why;
@@ -199,6 +201,10 @@ void add_challenge(CLI::App& app, exit_code& result) {
   command->add_option("--noise-db", given->noise_dB, "Peak of the first pluck over the noise; 0: drawn, 0.3 to 0.5 mN")
       ->check(CLI::Range(0.0, 120.0))
       ->capture_default_str();
+  command->add_option("--pitch", given->pitch_Hz, "Strings between these; without it 280 to 870")
+      ->expected(2)
+      ->check(CLI::Range(20.0, 5000.0))
+      ->type_name("HZ HZ");
   command->add_option("--shard", given->shard, "The K-th of N parts: every N-th rig")->type_name("K/N")->capture_default_str();
   command->add_flag("--leave-out", given->leave_out,
                     "Diagnosed by a catalogue that does not know what is hidden: it should say so (left-out.md)");

@@ -134,10 +134,13 @@ hidden_effect under_the_bow(const std::string& name, challenge_rig& r, source& s
 }
 
 /// Strings besides the E: the declared values stay as far off as they were drawn.
-void draw_other_string(challenge_rig& r, source& s) {
+void draw_other_string(const std::vector<double>& pitch_Hz, challenge_rig& r, source& s) {
   auto& t = r.base.rig.string;
   auto& d = r.base.declared.string;
-  const double tension = s.uniform(0.6, 1.25), pitch = evenly_in_log(s, 0.45, 1.25), stiff = evenly_in_log(s, 0.4, 2.0);
+  const double tension = s.uniform(0.6, 1.25), one = t.fundamental_Hz;
+  const double pitch =
+      pitch_Hz.size() == 2 ? evenly_in_log(s, pitch_Hz[0] / one, pitch_Hz[1] / one) : evenly_in_log(s, 0.45, 1.25);
+  const double stiff = evenly_in_log(s, 0.4, 2.0);
   for (auto* p : {&t, &d}) p->tension_N *= tension, p->fundamental_Hz *= pitch, p->bending_stiffness_Nm2 *= stiff;
   r.base.law = rosin::velocity_curve<rosin::two_exponential_curve<double>>{r.base.steady_friction};
 }
@@ -184,7 +187,7 @@ challenge_rig draw_challenge(const challenge_choice& choice) {
   r.name = "challenge-" + std::to_string(choice.seed);
   r.base = rosin::draw_rig(choice.seed);
   source s{choice.seed ^ 0x9e3779b97f4a7c15ULL};
-  draw_other_string(r, s);
+  draw_other_string(choice.pitch_Hz, r, s);
   r.base.rig.damping = s.uniform() < 0.5 ? rosin::damping_convention::viscous : rosin::damping_convention::kelvin_voigt;
   r.bowed = r.base.rig;
   const auto& all = hideable();

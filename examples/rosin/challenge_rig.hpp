@@ -52,10 +52,11 @@ struct challenge_rig {
 
 struct challenge_choice {
   std::uint64_t seed = 1;
-  int effects = 1;      ///< 0 to 2
-  double strength = 1;  ///< 1: as strong as in a bad laboratory
-  double noise_dB = 0;  ///< 0: drawn; else peak of the loudest pluck over the noise's standard deviation
-  std::string only;     ///< this effect and no other
+  int effects = 1;                 ///< 0 to 2
+  double strength = 1;             ///< 1: as strong as in a bad laboratory
+  double noise_dB = 0;             ///< 0: drawn; else peak of the loudest pluck over the noise's standard deviation
+  std::string only;                ///< this effect and no other
+  std::vector<double> pitch_Hz{};  ///< of the strings, lowest and highest; none: 280 to 870
 };
 
 inline double evenly_in_log(rosin::gaussian_source& s, double low, double high) {

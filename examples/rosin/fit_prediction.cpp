@@ -116,7 +116,7 @@ rosin::outcome<pluck_prediction> predict_pluck(const rosin::pluck_fit_result& fi
   out.name = take.name;
   out.rate_Hz = take.rate_Hz;
   out.release_s = start->release_s.front();
-  out.limits = options.limits_for(take.rate_Hz, fit.string().partial_Hz(options.most_partials));
+  out.limits = options.limits_for(take.rate_Hz, fit.string());
   const rosin::band_kernels kernels;
   const rosin::fir& kernel = kernels.of(out.limits, take.rate_Hz);
   for (std::size_t c = 0; c < 2; ++c) out.recorded_N[c] = filtered(take.force_N[c], kernel);

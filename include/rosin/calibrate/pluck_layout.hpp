@@ -61,6 +61,10 @@ struct pluck_options {
     const double stop = std::min(stop_fraction * rate_Hz, highest_Hz);
     return {stop * pass_fraction / stop_fraction, stop};
   }
+  /// Ends between the last partial that is fitted and the next, so that no small change of the string moves one across.
+  [[nodiscard]] band limits_for(double rate_Hz, const ringing_string& string) const noexcept {
+    return limits_for(rate_Hz, (string.partial_Hz(most_partials) + string.partial_Hz(most_partials + 1)) / 2);
+  }
 };
 
 /// Where each parameter stands in the vectors and matrices of the fit.

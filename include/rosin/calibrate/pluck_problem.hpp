@@ -4,7 +4,6 @@
 // The least-squares problem behind the fit of plucks: residual, gradient and normal matrix. Each take is two stretches, before
 // the release and after it, each a sum of damped lines; a guard of half a filter's length around the release is left out.
 // Poles and residues are differentiated numerically (they cost nothing); the sums over samples are done by damped_lines.hpp.
-//
 // What rings is the model's affair: `plain_plucks` is the string between pinned ends, and whatever else comes down to damped
 // lines (diagnosis) is fitted by the same code.
 //
@@ -79,7 +78,7 @@ public:
     for (Eigen::Index p = 0; p < model.size(); ++p) prior_.push_back(model.prior(p, takes, guess));
     for (std::size_t i = 0; i < takes.size(); ++i) {
       const double rate = takes[i].rate_Hz;
-      limits_ = options.limits_for(rate, model.string(value).partial_Hz(options.most_partials));
+      limits_ = options.limits_for(rate, model.string(value));
       fir kernel{0, {1.0}};
       if (filtered) kernel = kernels.of(limits_, rate);
       else limits_ = {0.5 * rate, 0.5 * rate};
@@ -182,16 +181,17 @@ std::array<Eigen::MatrixXd, 2> line_problem<Model>::sensitivities(const Eigen::V
     if (!model_.is_free(p) || !model_.concerns(p, take)) continue;
     const double h = model_.step(p, v);
     Eigen::VectorXd up = v, down = v;
-    up[p] += h;
-    down[p] -= h;
-    const std::vector<damped_line> above = lines(up, take, part), below = lines(down, take, part);
-    const auto count = static_cast<Eigen::Index>(std::min({above.size(), below.size(), at.size()}));
-    if (above.size() != at.size() || below.size() != at.size()) continue;  // a partial at the very edge of the band: weight 0
-    for (Eigen::Index n = 0; n < count; ++n)
+    up[p] += h, down[p] -= h;
+    std::vector<damped_line> above = lines(up, take, part), below = lines(down, take, part);
+    // With a partial at the very edge of the band (weight 0) there is one line more or less on one side.
+    const double width = above.size() == below.size() ? 2 * h : h;
+    if (above.size() != at.size()) above = at;
+    if (below.size() != at.size()) below = at;
+    for (Eigen::Index n = 0; n < N; ++n)
       for (std::size_t c = 0; c < 2; ++c) {
         const auto i = static_cast<std::size_t>(n);
-        const std::complex<double> change = (above[i].residue[c] - below[i].residue[c]) / (2 * h);
-        const std::complex<double> drift = at[i].residue[c] * (above[i].pole - below[i].pole) / (2 * h);
+        const std::complex<double> change = (above[i].residue[c] - below[i].residue[c]) / width;
+        const std::complex<double> drift = at[i].residue[c] * (above[i].pole - below[i].pole) / width;
         out[c].block<1, 4>(p, 4 * n) << change.real(), -change.imag(), drift.real(), -drift.imag();
       }
   }
@@ -243,7 +243,7 @@ template <LineModel Model>
 Eigen::MatrixXd line_problem<Model>::scatter(const Eigen::VectorXd& v) const {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(model_.size(), model_.size());
   each_stretch(v, [&](std::size_t, const stretch&, const auto& now, const Eigen::MatrixXd& gram, const auto& to) {
-    Eigen::VectorXd weight(4 * static_cast<Eigen::Index>(now.size()));
+    Eigen::VectorXd weight(to[0].cols());
     for (std::size_t n = 0; n < now.size(); ++n)
       weight.segment<4>(4 * static_cast<Eigen::Index>(n)).setConstant(limits_(now[n].pole.imag() / (2 * std::numbers::pi)));
     for (std::size_t c = 0; c < 2; ++c) {

@@ -69,7 +69,7 @@ public:
     Eigen::Index at = 0;
     for (std::size_t t = 0; t < plan_.takes.size(); ++t) {
       const double rate = plan_.takes[t].rate_Hz;
-      const band limits = plan_.options.limits_for(rate, plan_.options.most_partials * value_[0]);
+      const band limits = plan_.options.limits_for(rate, layout_.string(value_));
       const auto lines = model.lines(v, t, 1, release_s, limits, plan_.options.most_partials);
       const Eigen::Index n = samples(t);
       out.segment(at, 2 * n) = line_runner(lines, 1 / rate).sum(lines, static_cast<std::size_t>(n)).reshaped();

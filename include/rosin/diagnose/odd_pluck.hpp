@@ -118,11 +118,11 @@ inline void search_place(odd_pluck& odd) {
     return take;
   };
   const auto early = [&](double x) {
-    const auto seen = see(odd.others.data, odd.others.best, from(x), few_periods);
+    const auto seen = see(odd.others.data, odd.others.best, from(x), few_periods, freedom::release_only);
     return seen ? seen->fit.quality.residual_ratio[0] : 1.0;
   };
   const auto whole = [&](double x) {
-    return predicted(odd.others.data, odd.others.best, from(x), rms_of(odd.others.best.quality.noise));
+    return predicted(odd.others.data, odd.others.best, from(x), rms_of(odd.others.best.quality.noise), freedom::release_only);
   };
   double best = ends, least = early(best), bend = 0;
   const auto attempt = [&](double x) {

@@ -11,15 +11,15 @@
 //                    amplitude) of what there was to explain: no model of a bead is exact either. Of less than that it takes
 //                    away nearly all, and gains 40.
 //
-// Explained is what leaves on such takes no more than a quarter of the noise beyond it, or 12 % of what there was
-// and six times the noise. A mismatch needs no name: it
-// is also where they are off by more than 0.6 of the noise, and where what rings is noisier than what was held.
+// Explained is what leaves on such takes no more than a quarter of the noise beyond it, or 12 % of what there was and six times
+// the noise. A mismatch needs no name: it is also where they are off by more than 0.6 of the noise, and where what rings is
+// noisier than what was held.
 //
 // Two effects found one after the other may stand in one another's place; each is then taken out and sought anew.
 //
 // The first threshold holds the false-alarm rate of the whole search over the catalogue (its largest gain on plucks without
-// an effect is 3 to 7). Evidence is  ln L - (k / 2) ln n.  Takes that were not fitted are predicted: of them only the instant of
-// release and the strength are free.
+// an effect is 3 to 7). Evidence is  ln L - (k / 2) ln n.  Of takes that were not fitted next to nothing is free
+// (pluck_prediction.hpp).
 //
 #pragma once
 

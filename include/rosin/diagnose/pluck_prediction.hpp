@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What a fit of plucks leaves: where it shows, how well takes that were not fitted are predicted (of them only the instant of
-// release and the strength are free), and whether what rings is noisier than what was held.
+// release and the strength are free, and where no other was made at that place the place, within what a notebook tells of it),
+// and whether what rings is noisier than what was held.
 //
 #pragma once
 
@@ -80,9 +81,10 @@ struct seen_take {
   [[nodiscard]] line_problem<scene_plucks> problem() const { return data.problem(fit.effects, fit.value, stage, {1, 1}); }
 };
 
-/// By its first `most_periods`; nothing where no release is found.
+/// By its first `most_periods`; nothing where no release is found. `most`: freedom::release_only where the place is exact.
 inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit, const pluck_take& held,
-                                    double most_periods = 1e9) {
+                                    double most_periods = 1e9, freedom most = freedom::release_and_place) {
+  constexpr double most_off = 0.005;  // what a rig file that says nothing is taken to mean (rig_values.hpp)
   seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options, data.guess.ends)}, {}, {}};
   const auto start = find_start(out.data.takes, data.guess);
   if (!start) return std::nullopt;
@@ -91,7 +93,9 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
   std::size_t nearest = 0;
   for (std::size_t t = 1; t < data.takes.size(); ++t)
     if (std::abs(data.takes[t].position - held.position) < std::abs(data.takes[nearest].position - held.position)) nearest = t;
-  v[out.data.layout.position(0)] = fit.value[data.layout.position(nearest)] + held.position - data.takes[nearest].position;
+  if (data.takes[nearest].position == held.position) most = freedom::release_only;
+  const double place = fit.value[data.layout.position(nearest)] + held.position - data.takes[nearest].position;
+  v[out.data.layout.position(0)] = place;
   const auto from = [&](int which) { return fit.value[data.layout.at(nearest, which)]; };
   v[out.data.layout.at(0, pluck_layout::release)] = start->release_s[0] + 0.25 / start->fundamental_Hz - 0.25 / fit.value[0];
   v[out.data.layout.at(0, pluck_layout::strength)] = std::log(held.strength_N);
@@ -113,18 +117,21 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
     at += static_cast<Eigen::Index>(e.parameters.size());
     effects.push_back(std::move(mine));
   }
-  out.stage = {1000, horizon, true, freedom::release_only};
-  out.fit = fit_scene(out.data, effects, v,
-                      {{12, std::min(8.0, horizon), false, freedom::release_only},
-                       {1000, std::min(12.0, horizon), true, freedom::release_only},
-                       out.stage},
-                      {1e-3, 1e-3});
+  const auto fit_with = [&](freedom free) {
+    out.stage = {1000, horizon, true, free};
+    out.fit = fit_scene(out.data, effects, v,
+                        {{12, std::min(8.0, horizon), false, free}, {1000, std::min(12.0, horizon), true, free}, out.stage},
+                        {1e-3, 1e-3});
+  };
+  fit_with(most);
+  if (!(std::abs(out.fit.value[out.data.layout.position(0)] - place) <= most_off)) fit_with(freedom::release_only);
   return out;
 }
 
 /// Of a take that was not fitted: rms residual / rms recorded; the noise's share; samples.
-inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise) {
-  const auto seen = see(data, fit, held);
+inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise,
+                                       freedom most = freedom::release_and_place) {
+  const auto seen = see(data, fit, held, 1e9, most);
   if (!seen) return {1, 0, 0};
   const auto problem = seen->problem();
   double power = 0, samples = 0;

@@ -64,8 +64,8 @@ private:
 }
 
 /// Which parameters a fit moves. Corrections: late parameters, and how far declared terminations are off. Of a take that is only
-/// predicted, release and strength alone.
-enum class freedom { all, no_corrections, release_only };
+/// predicted, release and strength alone; and its place, where none of those that were fitted was made there.
+enum class freedom { all, no_corrections, release_only, release_and_place };
 
 class scene_plucks : public pluck_layout {
 public:
@@ -88,10 +88,11 @@ public:
     return at;
   }
   [[nodiscard]] bool is_free(Eigen::Index p) const {
-    if (free_ == freedom::release_only)
-      return p >= plain_size() ? added(p).take >= 0
-                               : p >= at(0, 0) && p < first_of_ends() &&
-                                     (p - at(0, 0)) % take_size <= static_cast<Eigen::Index>(pluck_layout::strength);
+    if (free_ == freedom::release_only || free_ == freedom::release_and_place) {
+      if (p >= plain_size()) return added(p).take >= 0;
+      if (p < at(0, 0)) return p >= first_position && free_ == freedom::release_and_place;
+      return p < first_of_ends() && (p - at(0, 0)) % take_size <= static_cast<Eigen::Index>(pluck_layout::strength);
+    }
     if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_ends())) return false;
     return p >= plain_size() ? !added(p).by_score : pluck_layout::is_free(p);
   }

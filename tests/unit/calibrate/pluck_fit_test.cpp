@@ -19,8 +19,8 @@ const rosin::modal_rig guitar_rig{.string = {.length_m = 0.314,
                                              .loss = {.quality = 1000}}};
 
 rosin::pluck_take pluck(double position, double force_N, std::uint64_t seed, double duration_s = 0.14, double ac_Hz = 0,
-                        rosin::damping_convention damping = rosin::damping_convention::viscous) {
-  rosin::modal_rig with = guitar_rig;
+                        rosin::damping_convention damping = rosin::damping_convention::viscous,
+                        rosin::modal_rig with = guitar_rig) {
   with.damping = damping;
   const auto made =
       rosin::simulate_pluck(with, {.position = position, .force_N = force_N, .release_s = 0.004, .duration_s = duration_s});
@@ -94,6 +94,23 @@ TEST_CASE("AC-coupled sensors are part of the model") {
   CHECK(fit->misfit < 1.6);
   CHECK(sigmas(*fit, layout::fundamental, 659.69) < 4);
   CHECK(sigmas(*fit, layout::first_position, 0.3) < 4);
+}
+
+TEST_CASE("a low string, of which more partials lie in the band than are fitted") {
+  rosin::modal_rig low = guitar_rig;
+  low.string = {
+      .length_m = 0.65, .tension_N = 70, .fundamental_Hz = 82.41, .bending_stiffness_Nm2 = 6e-5, .loss = {.quality = 800}};
+  std::vector<rosin::pluck_take> takes;
+  for (const double force_N : {1.0, 0.5})
+    takes.push_back(pluck(0.3, force_N, takes.size() + 40, 0.14, 0, rosin::damping_convention::viscous, low));
+  const auto fit = rosin::fit_plucks(takes, {.fundamental_Hz = 82.6});
+  REQUIRE_MESSAGE(fit, fit.error());
+  CHECK(fit->converged);
+  CHECK(fit->unidentified.empty());
+  CHECK(fit->misfit < 1.3);
+  CHECK(sigmas(*fit, layout::fundamental, 82.41) < 4);
+  CHECK(fit->sd[layout::fundamental] / 82.41 < 1e-6);
+  CHECK(sigmas(*fit, layout::inharmonicity, low.string.inharmonicity()) < 4);
 }
 
 TEST_CASE("another convention of damping is taken up by psi") {

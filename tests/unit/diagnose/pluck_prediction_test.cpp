@@ -40,3 +40,29 @@ TEST_CASE("noisier is by three tenths, and by more where little was seen") {
   CHECK_FALSE(rosin::detail::is_noisier({1e-3, 1.4e-3}, hardly));
   CHECK(rosin::detail::is_noisier({1.6e-3, 1e-3}, hardly));
 }
+
+TEST_CASE(
+    "a pluck from a place of its own is predicted from there, as far off as a notebook is; where others were made, from theirs") {
+  const auto layout = test::two_plucks({});
+  const Eigen::VectorXd v = test::values_of(layout);
+  constexpr double noise_N = 3e-4;
+  const std::vector<rosin::pluck_take> takes{test::scene_pluck(layout, {}, v, 0, noise_N, 1),
+                                             test::scene_pluck(layout, {}, v, 1, noise_N, 2)};
+  const rosin::scene_data data{takes, {.fundamental_Hz = 660}, {}, layout};
+  rosin::scene_fit fit;
+  fit.value = v, fit.horizon_periods = 1e9;
+  Eigen::VectorXd there = v;
+  there[layout.position(0)] = 0.421;
+  rosin::pluck_take held = test::scene_pluck(layout, {}, there, 0, noise_N, 3);
+  const auto left_over_floor = [&](double declared) {
+    held.position = declared;
+    const auto [left, floor, samples] = rosin::detail::predicted(data, fit, held, noise_N);
+    return left / floor;
+  };
+  CHECK(left_over_floor(0.42) == doctest::Approx(1).epsilon(0.1));  // 0.3 of the others stands for 0.301
+  CHECK(left_over_floor(0.4203) == doctest::Approx(1).epsilon(0.1));
+  CHECK(left_over_floor(0.44) > 20);
+  there[layout.position(0)] = 0.3015;
+  held = test::scene_pluck(layout, {}, there, 0, noise_N, 4);
+  CHECK(left_over_floor(0.3) > 3);
+}
