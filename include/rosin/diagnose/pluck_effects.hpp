@@ -104,7 +104,7 @@ inline pluck_effect support_resonance_effect(const string_facts& f, int end) {
   pluck_effect e{.name = "support-resonance",
                  .place = end,
                  .at_end = true,
-                 .parameters = {{"frequency_Hz", 20, f.highest_Hz, 1e-6, true},
+                 .parameters = {{"frequency_Hz", 2, f.highest_Hz, 1e-6, true},
                                 {"q", 0.6, 3000, 1e-5, true},
                                 {"per_mass_per_kg", 0, 1e5 / Z, 1e-4 / Z},
                                 correction("lag_s", -lag, lag, 1e-9)},
@@ -130,7 +130,7 @@ inline pluck_effect resistive_end_effect(const string_facts& f, int end) {
                  .place = end,
                  .at_end = true,
                  .parameters = {{"conductance_m_sN", 1e-7 / Z, 0.5 / Z, 1e-5, true},
-                                {"corner_Hz", 1e-3 * f.fundamental_Hz, 0.5 * f.fundamental_Hz, 1e-4, true},
+                                {"corner_Hz", 1e-3 * f.fundamental_Hz, 2 * f.fundamental_Hz, 1e-4, true},
                                 correction("lag_s", -lag, lag, 1e-9)},
                  .strength = -1,
                  .apply = [Z, end](pluck_scene& s, const double* v, int) {
@@ -193,7 +193,7 @@ inline pluck_effect clamped_end_effect(const string_facts&, int end) {
 inline pluck_effect ac_coupling_effect(const string_facts&) {
   pluck_effect e{.name = "ac-coupling",
                  .parameters = {{"cutoff_Hz", 0.005, 200, 1e-5, true}},
-                 .starts = {{0.1}, {0.5}, {2}, {8}, {25}, {70}},
+                 .starts = {{0.02}, {0.1}, {0.5}, {2}, {8}, {25}, {70}},
                  .strength = -1,
                  .apply = [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
   e.shrinks_with = 0;
@@ -245,7 +245,7 @@ inline pluck_effect crosstalk_effect(const string_facts&) {
 inline pluck_effect slow_release_effect(const string_facts&) {
   pluck_effect e{.name = "slow-release",
                  .parameters = {{"duration_s", 2e-7, 1e-3, 1e-5, true}},
-                 .starts = {{3e-6}, {1e-5}, {1.8e-5}, {3e-5}, {6e-5}, {1.2e-4}},
+                 .starts = {{8e-7}, {1.5e-6}, {3e-6}, {1e-5}, {1.8e-5}, {3e-5}, {6e-5}, {1.2e-4}},
                  .strength = -1,
                  .apply = [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
   e.shrinks_with = 0;
@@ -260,7 +260,7 @@ inline pluck_effect pluck_width_effect(const string_facts& f) {
   const double L = f.length_m > 0 ? f.length_m : 1.0;
   pluck_effect e{.name = "finite-pluck-width",
                  .parameters = {{"width_m", 1e-5 * L, 0.1 * L, 1e-5, true}},
-                 .starts = {{3e-3 * L}, {1e-2 * L}, {3e-2 * L}},
+                 .starts = {{3e-4 * L}, {6e-4 * L}, {1.5e-3 * L}, {3e-3 * L}, {1e-2 * L}, {3e-2 * L}},
                  .strength = -1,
                  .apply = [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
   e.shrinks_with = 0;

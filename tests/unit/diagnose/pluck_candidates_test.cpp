@@ -27,6 +27,27 @@ TEST_CASE("of several effects the one that is there comes first") {
   CHECK(std::exp(fits[0].value[layout.size() + 1]) == doctest::Approx(14).epsilon(1e-3));
 }
 
+TEST_CASE("what no parameter scales is sought from little on: an effect that hardly shows is found all the same") {
+  const rosin::string_facts facts{
+      .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::pluck_options options{.internal_loss = false};
+  const auto layout = test::two_plucks(options);
+  constexpr std::array<double, 2> noise{1e-4, 1e-4};
+  const auto found = [&](const rosin::pluck_effect& effect, double there) {
+    rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
+    for (std::size_t t = 0; t < 2; ++t)
+      data.takes.push_back(test::scene_pluck(layout, {effect}, test::values_of(layout, {std::log(there)}), t, noise[0], 3 + t));
+    rosin::scene_fit plain;
+    plain.value = test::values_of(layout);
+    const auto fits = rosin::one_more_effect(data, plain, {effect}, false, noise);
+    REQUIRE(fits.size() == 1);
+    return std::exp(fits[0].value[layout.size()]) / there;
+  };
+  CHECK(found(rosin::slow_release_effect(facts), 1.2e-6) == doctest::Approx(1).epsilon(0.2));
+  CHECK(found(rosin::pluck_width_effect(facts), 2e-4) == doctest::Approx(1).epsilon(0.2));
+  CHECK(found(rosin::ac_coupling_effect(facts), 0.05) == doctest::Approx(1).epsilon(0.2));
+}
+
 TEST_CASE("an effect that a later one has made needless is given up") {
   const rosin::string_facts facts{
       .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
