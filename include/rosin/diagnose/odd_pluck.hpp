@@ -52,8 +52,7 @@ namespace detail {
 inline constexpr double clearly_off = 3;
 
 /// By release and strength of the first periods: what comes later is not to bend them.
-inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& take) {
-  constexpr double first_periods = 5;
+inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& take, double first_periods = 5) {
   auto seen = see(d.data, d.best, take, first_periods);
   if (!seen) return {};
   seen->stage.periods = d.best.horizon_periods;
@@ -93,9 +92,8 @@ inline loss_search find_loss(const take_and_model& t, std::size_t most_lag, std:
 }
 
 /// A whole number of samples that is missing from some instant on, where that accounts for nearly all.
-inline void search_loss(odd_pluck& odd) {
+inline void search_loss(odd_pluck& odd, const take_and_model& t) {
   constexpr std::size_t most_lag = 1024, gap = 80;  // a band's filter blurs the gap
-  const take_and_model& t = odd.ringing;
   if (t.recorded[0].size() < static_cast<Eigen::Index>(8 * gap)) return;
   const loss_search found = find_loss(t, most_lag, gap);
   double recorded = 0, off = 0, samples = 0;
@@ -177,6 +175,23 @@ inline std::optional<odd_pluck> against(pluck_diagnosis others, const pluck_take
   return odd;
 }
 
+/// Plucks at places of their own never contradict each other, as every place is free: of three or more the one that is farther
+/// from where it is declared than a notebook could be, if the others are not.
+inline std::optional<std::size_t> misplaced(const std::vector<pluck_take>& takes, const pluck_guess& guess,
+                                            const pluck_options& options) {
+  constexpr double most_off = 0.02, alike = 0.01;
+  const auto fit = fit_declared(takes, guess, options);
+  if (!fit || fit->horizon_periods < 1e8 || fit->layout.positions().size() < takes.size()) return std::nullopt;
+  const auto off = [&](std::size_t t) { return fit->value[fit->layout.position(t)] - takes[t].position; };
+  for (std::size_t i = 0; i < takes.size(); ++i) {
+    double low = 1, high = -1;
+    for (std::size_t t = 0; t < takes.size(); ++t)
+      if (t != i) low = std::min(low, off(t)), high = std::max(high, off(t));
+    if (high - low < alike && (off(i) > high + most_off || off(i) < low - most_off)) return i;
+  }
+  return std::nullopt;
+}
+
 /// What the declared model leaves of the worst of these takes; 1 where it cannot be fitted to all of their decay.
 inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {
   const auto fit = fit_declared(takes, guess, options);
@@ -197,11 +212,12 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
     if (i < from.size()) from.erase(from.begin() + static_cast<std::ptrdiff_t>(i));
     return from;
   };
-  std::size_t which = 0;
+  const auto elsewhere = detail::misplaced(all, guess, options);
+  std::size_t which = elsewhere.value_or(0);
   double least = 1;
-  for (std::size_t i = 0; i < all.size(); ++i)
+  for (std::size_t i = 0; i < all.size() && !elsewhere; ++i)
     if (const double left = detail::worst_of(without(all, i), guess, options); left < least) least = left, which = i;
-  if (!(least < far_better * detail::worst_of(all, guess, options))) return std::nullopt;
+  if (!elsewhere && !(least < far_better * detail::worst_of(all, guess, options))) return std::nullopt;
   std::vector<pluck_take> fitted = without(takes, which),
                           kept = which < takes.size() ? held : without(held, which - takes.size());
   if (kept.empty() && fitted.size() > 1) kept.push_back(std::move(fitted.back())), fitted.pop_back();
@@ -211,7 +227,8 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
   auto odd = detail::against(*std::move(others), all[which], guess, options);
   if (!odd) return std::nullopt;
   for (const pluck_take& take : all) odd->strongest = odd->strongest && take.strength_N <= odd->take.strength_N;
-  detail::search_loss(*odd);
+  detail::search_loss(*odd, odd->ringing);
+  if (!odd->lost) detail::search_loss(*odd, detail::compare_late(odd->others, odd->take, 1));  // an early one bends the release
   if (!odd->lost) detail::search_place(*odd);
   return odd;
 }

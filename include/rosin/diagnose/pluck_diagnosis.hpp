@@ -14,7 +14,6 @@
 // Explained is what leaves on such takes no more than a quarter of the noise beyond it, or 12 % of what there was and six times
 // the noise. A mismatch needs no name: it is also where they are off by more than 0.6 of the noise, and where what rings is
 // noisier than what was held.
-//
 // Two effects found one after the other may stand in one another's place; each is then taken out and sought anew.
 //
 // The first threshold holds the false-alarm rate of the whole search over the catalogue (its largest gain on plucks without
@@ -219,6 +218,8 @@ inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<plu
 inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool noise_seen, bool modulated) {
   constexpr double much_noise = 0.05;
   const double most_left = d.best.effects.size() > 1 ? 2 : 6;  // of the floor: who may take several names has to leave less
+  const bool brief = d.best.falls_short();
+  if (brief) d.base.horizon_periods = d.best.horizon_periods = 1e9;
   scene_fit plain = d.base;
   plain.horizon_periods = d.best.horizon_periods;
   for (const pluck_take& take : judged) {
@@ -229,17 +230,16 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   for (double* x : {&d.before, &d.after, &d.floor}) *x = std::sqrt(*x / static_cast<double>(judged.size()));
   const auto beyond_noise = [&](double x) { return std::sqrt(std::max(0.0, x * x - d.floor * d.floor)); };
   const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
-  const bool doubtful = !noise_seen && d.floor > much_noise;
+  const bool doubtful = !noise_seen && d.floor > much_noise, known_ends = d.data.layout.has_ends();  // never to the last digit
   const bool complete =
-      !doubtful && ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
-  const bool known_ends = d.data.layout.has_ends();  // never known to the last digit
-  d.mismatched =
-      d.mismatched || (left > 1.5 && !(known_ends && was <= 0.25 * d.floor)) || modulated || doubtful || was > 0.6 * d.floor;
+      !doubtful && !brief &&
+      ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
+  d.mismatched = d.mismatched || (left > 1.5 && !(known_ends && was <= 0.25 * d.floor)) || modulated || doubtful || brief ||
+                 was > 0.6 * d.floor;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   if (d.explained || excess <= 0.5 * was) return;
   d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it
-  d.found_gain.clear(), d.alternatives.clear();
-  d.after = d.before;
+  d.found_gain.clear(), d.alternatives.clear(), d.after = d.before;
 }
 
 /// The declared model by itself: a string between ends that are rigid, or that move as is known.

@@ -20,6 +20,12 @@ struct scene_fit {
   double horizon_periods = 0;  ///< how much of the decay was used
   int iterations = 0;
   bool converged = false;
+
+  /// Holds for the first periods only, though none of its effects is so limited: what comes later is a mismatch.
+  [[nodiscard]] bool falls_short() const {
+    return horizon_periods < 1e8 &&
+           std::none_of(effects.begin(), effects.end(), [](const pluck_effect& e) { return e.horizon_periods < 1e8; });
+  }
 };
 
 /// How much of the recordings one descent looks at.

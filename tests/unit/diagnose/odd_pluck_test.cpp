@@ -66,6 +66,34 @@ TEST_CASE("odd pluck: made elsewhere than declared" * doctest::test_suite("long"
   CHECK(odd->elsewhere.model[0].size() == odd->ringing.model[0].size());
 }
 
+TEST_CASE("odd pluck: samples lost so early that they would bend the release" * doctest::test_suite("long")) {
+  three p = sound_plucks();
+  constexpr std::size_t at = 780, count = 7;  // 1.4 periods after the release
+  for (auto& channel : p.takes[0].force_N) channel.erase(channel.begin() + at, channel.begin() + at + count);
+  const auto odd = odd_of(p.takes, p.held);
+  REQUIRE(odd);
+  CHECK(odd->take.name == "hard");
+  REQUIRE(odd->lost);
+  CHECK(odd->lost->count == count);
+  CHECK(std::abs(odd->lost->time_s * odd->take.rate_Hz - at) < 2.5 * odd->lost->sd_s * odd->take.rate_Hz);
+}
+
+TEST_CASE("odd pluck: of three at places of their own the one that was made elsewhere" * doctest::test_suite("long")) {
+  three p = sound_plucks();
+  p.takes[0].position = 0.303;  // of 0.3: as notebooks are
+  p.takes[1] = test::modal_pluck(0.5, 8, 0, 0.2), p.takes[1].position = 0.2022, p.takes[1].name = "soft";
+  p.held[0] = test::modal_pluck(0.75, 9, 0, 0.4), p.held[0].position = 0.452, p.held[0].name = "kept";
+  for (auto* take : {&p.takes[1], &p.held[0]})
+    for (auto& channel : take->force_N) channel.resize(5000);
+  const auto odd = odd_of(p.takes, p.held);
+  REQUIRE(odd);
+  CHECK(odd->take.name == "kept");
+  REQUIRE(odd->moved);
+  CHECK(odd->moved->position == doctest::Approx(0.4).epsilon(1e-3));
+  p.held[0].position = 0.4025;
+  CHECK_FALSE(odd_of(p.takes, p.held));
+}
+
 TEST_CASE("odd pluck: the strongest rings a thousandth higher") {
   three p = sound_plucks();
   for (auto& channel : p.takes[0].force_N) channel = rosin::resampled(channel, 1e-3);
