@@ -176,8 +176,8 @@ std::optional<double> see_as_wide(const rosin::rig& rig, const rosin::pluck_diag
   const auto one = rosin::as_one_contact({take}, model);
   if (!one) return std::nullopt;
   auto& m = s.motion;
-  const auto centre_on = [](std::vector<double>& a, std::vector<double>& b,
-                            const std::vector<double>& mean) {  // what they part by stays
+  // what they part by stays
+  const auto centre_on = [](std::vector<double>& a, std::vector<double>& b, const std::vector<double>& mean) {
     for (std::size_t i = 0; i < mean.size(); ++i) {
       const double apart = 0.5 * (a[i] - b[i]);
       a[i] = mean[i] + apart, b[i] = mean[i] - apart;

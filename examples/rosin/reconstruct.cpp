@@ -63,8 +63,8 @@ rosin::outcome<calibration_set> calibration_of(const options& given, const rosin
     if (const auto why = from.add_input(given.calibration)) return *why;
     return read_calibration(given.calibration);
   }
-  auto made = calibrate(
-      rig, from, !given.report.empty());  // with --model, too: what the declared model makes of the plucks stands beside it
+  // with --model, too: what the declared model makes of the plucks stands beside it
+  auto made = calibrate(rig, from, !given.report.empty());
   if (!made) return rosin::failure{made.error()};
   fitted = *std::move(made);
   return set_of(*fitted);

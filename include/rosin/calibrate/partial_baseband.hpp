@@ -54,8 +54,8 @@ class baseband_bank {
 public:
   baseband_bank(std::span<const double> signal, double rate_Hz, double half_width_Hz) : rate_Hz_{rate_Hz} {
     half_width_Hz_ = std::min(half_width_Hz, rate_Hz / 4);
-    const auto pause =
-        static_cast<std::size_t>(std::ceil(4 * rate_Hz / half_width_Hz_));  // so that the end does not wrap to the start
+    // so that the end does not wrap to the start
+    const auto pause = static_cast<std::size_t>(std::ceil(4 * rate_Hz / half_width_Hz_));
     length_ = fast_size(signal.size() + pause);
     std::vector<double> padded(length_, 0.0);
     std::copy(signal.begin(), signal.end(), padded.begin());

@@ -152,8 +152,8 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   double mu = 0;
   for (std::size_t t = 0; t < bench.records().size(); ++t)
     mu += std::abs(bench.predicted(t).mean()) / static_cast<double>(bench.records().size());
-  h.parameters[1].sd =
-      std::hypot(h.parameters[1].sd, size * bench.level_sd() / std::max(0.1, mu - bench.level_sd()));  // the level divides
+  // the level divides
+  h.parameters[1].sd = std::hypot(h.parameters[1].sd, size * bench.level_sd() / std::max(0.1, mu - bench.level_sd()));
   return h;
 }
 

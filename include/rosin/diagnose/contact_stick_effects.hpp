@@ -221,8 +221,8 @@ template <std::size_t N>
                     {"q", q, q * std::hypot(sd[2], contact_faults::rod_q)},
                     {"mass_kg", mass, mass * std::hypot(mass * sd[0], contact_faults::rod_mass)}};
   constexpr double heaviest_kg = 0.15;  // modes of rods have grams
-  h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 &&
-              q < 79;  // inside the range that was searched
+  // inside the range that was searched
+  h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 79;
   return h;
 }
 

@@ -78,8 +78,8 @@ public:
     residual_ = spectra(left.force_N);
     for (const auto& n : left.nuisances) nuisances_.push_back(spectra(n));
     power_ = residual_.squaredNorm();
-    noise_power_ =
-        static_cast<double>(bins_.size()) * line_.weighted_samples() / (line_.rate_Hz * line_.rate_Hz);  // of one channel
+    // of one channel
+    noise_power_ = static_cast<double>(bins_.size()) * line_.weighted_samples() / (line_.rate_Hz * line_.rate_Hz);
     alike_ = std::max(1.0, faded / static_cast<double>(stride));
   }
 

@@ -123,8 +123,8 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
       const band all{limits.stop_Hz, limits.stop_Hz};
       const ringing_string slack = layout.string(v), mean = tightened(slack, raised(layout, v, t, axial_N));
       const double wait_s = std::min(1.0, static_cast<double>(first) - released) / rate;
-      const auto steps = static_cast<std::size_t>(
-          std::ceil(120e3 / rate));  // half of them or twice as many: the same within 0.002 of what is taken out
+      // half of them or twice as many: the same within 0.002 of what is taken out
+      const auto steps = static_cast<std::size_t>(std::ceil(120e3 / rate));
       const auto run = [&](const ringing_string& string, double stretch) {
         const nearest_pinned pinned(scene, string);
         return stretching_pluck(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension, all, 400,

@@ -67,8 +67,8 @@ private:
         const double power = ringings_[i].strength();
         k.add(g.relative / power, std::hypot(g.sd, 0.01 * g.relative) / power);
       }
-    d_.glide_per_power = k.mean(),
-    d_.glide_per_power_sd = std::hypot(k.sd(), 0.05 * k.mean());  // so far off were simulated strings
+    // so far off were simulated strings
+    d_.glide_per_power = k.mean(), d_.glide_per_power_sd = std::hypot(k.sd(), 0.05 * k.mean());
   }
   /// The glide that a ringing has by its strength.
   [[nodiscard]] glide_found glide_of(const pickup_ringing& r) const {

@@ -110,8 +110,8 @@ inline pluck_effect support_resonance_effect(const string_facts& f, int end) {
                                 correction("lag_s", -lag, lag, 1e-9)},
                  .strength = 2,
                  .apply = [Z, end](pluck_scene& s, const double* v, int) {
-                   const double share = std::max(
-                       0.5, 1 - 2 * std::numbers::pi * v[0] * v[3] / v[1]);  // of the mass; the rest is what the resistance lags
+                   // of the mass; the rest is what the resistance lags
+                   const double share = std::max(0.5, 1 - 2 * std::numbers::pi * v[0] * v[3] / v[1]);
                    s.ends[static_cast<std::size_t>(end)].modes.push_back(
                        {v[0] / std::sqrt(share), v[1] * std::sqrt(share), v[2] * Z / share});
                    s.ends[static_cast<std::size_t>(end)].lag_s += v[3];

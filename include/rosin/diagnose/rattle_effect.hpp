@@ -122,8 +122,8 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
 
 /// Whether a pluck that contradicts the others met an obstacle. impedance_Ns_m: the string's.
 [[nodiscard]] inline std::optional<rattle> find_rattle(const odd_pluck& odd, double impedance_Ns_m) {
-  constexpr double most_periods = 24, least_one_sided = 0.8, most_spread = 0.1,
-                   give = 0.02;  // how far a stop yields is not told from the gap
+  // give: how far a stop yields is not told from the gap
+  constexpr double most_periods = 24, least_one_sided = 0.8, most_spread = 0.1, give = 0.02;
   auto t = detail::foretell(odd.others, odd.take, most_periods);
   if (!t || !(impedance_Ns_m > 0)) return std::nullopt;
   const auto& noise = odd.others.best.quality.noise;

@@ -169,8 +169,8 @@ private:
     const Eigen::Index more = v.size() - first_of_ends();
     Eigen::VectorXd k(gain_near + more + 1);
     k << v.head(gain_near), v.tail(more), s.string.fundamental_Hz;
-    k.segment(gain_near, plain_size() - first_of_ends()).array() +=
-        1;  // logarithms about 0: how near a string is tells by their size
+    // logarithms about 0: how near a string is tells by their size
+    k.segment(gain_near, plain_size() - first_of_ends()).array() += 1;
     return k;
   }
 

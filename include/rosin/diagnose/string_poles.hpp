@@ -125,9 +125,8 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   for (const yielding_end& end : scene.ends)
     for (const admittance_mode& m : end.modes) {
       const double w = 2 * std::numbers::pi * m.frequency_Hz;
-      if (m.q < 0.5)
-        roots.push_back(m.pole() - 2 * scene.string.fundamental_Hz * m.per_mass_per_s * m.q /
-                                       w);  // the slower one; the string draws the end back as well
+      // the slower one; the string draws the end back as well
+      if (m.q < 0.5) roots.push_back(m.pole() - 2 * scene.string.fundamental_Hz * m.per_mass_per_s * m.q / w);
       else roots.emplace_back(-w / (2 * m.q), w * std::sqrt(std::max(0.01, 1 - 0.25 / (m.q * m.q))));
     }
   std::sort(roots.begin(), roots.end(), [](auto a, auto b) { return a.imag() < b.imag(); });
@@ -152,9 +151,9 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   for (const std::complex<double> s : poles) {
     const std::complex<double> h(0, 1e-4 * spacing);
     const loop_response above = close_loop(scene, position, s + h), below = close_loop(scene, position, s - h);
+    // the loop as such is straight only far from a mode
     const std::complex<double> up = detail::mode_zeros(scene, s + h, s, spacing),
-                               down = detail::mode_zeros(scene, s - h, s,
-                                                         spacing);  // the loop as such is straight only far from a mode
+                               down = detail::mode_zeros(scene, s - h, s, spacing);
     const std::complex<double> over = plain::reciprocal((above.determinant * up - below.determinant * down) * s) * (-2.0 * h);
     damped_line line{s, {}};
     for (std::size_t e = 0; e < 2; ++e) {

@@ -113,8 +113,8 @@ template <class T, std::size_t Count>
     return {sum_of_lanes<T, Count>(v[0]), sum_of_lanes<T, Count>(v[1]), sum_of_lanes<T, Count>(v[2]),
             sum_of_lanes<T, Count>(v[3])};
   } else {
-    const auto halves =
-        []<std::size_t... I>(const vector& a, const vector& b, std::index_sequence<I...>) {  // a0+a2, b0+b2, a1+a3, b1+b3
+    // a0+a2, b0+b2, a1+a3, b1+b3
+    const auto halves = []<std::size_t... I>(const vector& a, const vector& b, std::index_sequence<I...>) {
       return vector(__builtin_shufflevector(a, b, (I / 4 * 4 + I % 4 / 2 + I % 2 * Count)...) +
                     __builtin_shufflevector(a, b, (I / 4 * 4 + 2 + I % 4 / 2 + I % 2 * Count)...));
     };

@@ -66,9 +66,9 @@ public:
                                                                                                 limits.pass_Hz /
                                                                                                 (0.15 * rate_Hz))} {
     const double longest = most * steps_;
-    const passage_span span{least_, longest, string.stiffness_s2(),
-                            limits, rate_Hz, string.loss.inverse_q(string.fundamental_Hz) / 2,
-                            800};  // less, and a held string may grow
+    // less, and a held string may grow
+    const passage_span span{
+        least_, longest, string.stiffness_s2(), limits, rate_Hz, string.loss.inverse_q(string.fundamental_Hz) / 2, 800};
     first_ = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(span.first));
     size_ = static_cast<std::ptrdiff_t>(std::ceil(std::max(span.last, longest + 0.2 * steps_))) - first_ + 1;
     rows_ = static_cast<std::ptrdiff_t>(std::ceil((longest - least_) * parts_)) + 2;

@@ -157,8 +157,8 @@ struct stacked {
   }
   const Eigen::ArrayXd ratio = residual.array().square() / (out.scale * out.scale),
                        nu = Eigen::ArrayXd::Constant(n, detail::student_freedom);
-  const double slope =
-      ((nu + 1) * (nu - ratio) / (nu + ratio).square()).sum() / weight.sum();  // of the influence, against the weights
+  // of the influence, against the weights
+  const double slope = ((nu + 1) * (nu - ratio) / (nu + ratio).square()).sum() / weight.sum();
   const Eigen::MatrixXd inverse = hessian.ldlt().solve(Eigen::MatrixXd::Identity(all, all)) / std::max(0.2, slope);
   out.covariance = detail::sandwich(s, weight.cwiseProduct(residual), inverse).topLeftCorner(shared, shared);
   out.rows = static_cast<double>(n);

@@ -63,8 +63,8 @@ TEST_CASE("declared ends are in the scene, off by as much as the parameters say,
   CHECK(model.scene(v, 0).ends[0].rigid());
   CHECK(model.is_free(first));
   CHECK_FALSE(rosin::scene_plucks(layout, {0, 0}, {}, rosin::freedom::no_corrections).is_free(first));
-  CHECK_FALSE(
-      rosin::scene_plucks(layout, {0, 0}, {}, rosin::freedom::release_only).is_free(first + 1));  // where a strength would stand
+  // where a strength would stand
+  CHECK_FALSE(rosin::scene_plucks(layout, {0, 0}, {}, rosin::freedom::release_only).is_free(first + 1));
 }
 
 TEST_CASE("behind a high-pass what was held is gone until the first wave comes, whatever the ends do") {

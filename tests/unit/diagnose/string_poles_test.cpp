@@ -23,8 +23,8 @@ clamped_mode mode_between(const std::array<double, 2>& clamping, int n, double B
   for (int i = 0; i < 200; ++i) {
     kappa = std::sqrt(q * q + 1 / B);
     for (std::size_t e = 0; e < 2; ++e) {
-      const double spring = clamping[e] * std::sqrt(B),
-                   free = (1 - clamping[e]) * B * (q * q + kappa * kappa);  // B y'' = spring y'
+      // B y'' = spring y'
+      const double spring = clamping[e] * std::sqrt(B), free = (1 - clamping[e]) * B * (q * q + kappa * kappa);
       a[e] = std::atan2(spring * q, free + spring * kappa);
     }
     q = n * pi + a[0] + a[1];

@@ -113,8 +113,8 @@ TEST_CASE("planes of one pitch stretch a string as one plane does, since they ha
     two.coupling = coupling;
     const auto both = rosin::simulate_pluck(rig, two, pluck, settings);
     REQUIRE(both);
-    CHECK(test::apart(both->force_near_N, single->force_near_N) <
-          0.01 * stretched);  // the planes were stepped one after the other
+    // the planes were stepped one after the other
+    CHECK(test::apart(both->force_near_N, single->force_near_N) < 0.01 * stretched);
     CHECK(test::apart(both->centre_velocity_m_s, single->centre_velocity_m_s) <
           0.01 * test::apart(single->centre_velocity_m_s, slack->centre_velocity_m_s));
   }

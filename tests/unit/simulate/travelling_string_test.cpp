@@ -26,8 +26,8 @@ TEST_CASE("a force that stays while the contact travels holds the string where i
   for (int n = 0; n < steps; ++n) {
     const double x = 0.2 + 0.1 * std::min(1.0, 2.0 * n / steps);
     waves.move_to(x);
-    const double slope = x < 0.3 ? 0.1 * 2 / 0.5 * string.string.length_m * ((1 - x) - x) / 2 / string.string.tension_N
-                                 : 0;  // the contact goes on along a string that is bent at it: mean of both sides
+    // the contact goes on along a string that is bent at it: mean of both sides
+    const double slope = x < 0.3 ? 0.1 * 2 / 0.5 * string.string.length_m * ((1 - x) - x) / 2 / string.string.tension_N : 0;
     place += (waves.apply(1).centre_m_s + slope) * step_s;
   }
   CHECK(place == doctest::Approx(rosin::static_compliance_m_N(string.string, 0.3)).epsilon(0.02));
