@@ -41,8 +41,10 @@ struct admittance_mode {
   double per_mass_per_s = 0;  ///< Z / M: 0 is rigid
 
   [[nodiscard]] std::complex<double> operator()(std::complex<double> s) const noexcept {
-    const double w = 2 * std::numbers::pi * frequency_Hz;
-    return per_mass_per_s * s * plain::reciprocal(s * s + s * (w / q) + w * w);
+    const double w = 2 * std::numbers::pi * frequency_Hz, loss = w / q, x = s.real(), y = s.imag();
+    const double re = x * (x + loss) - y * y + w * w, im = y * (2 * x + loss);
+    const double scale = per_mass_per_s / (re * re + im * im);
+    return {scale * (x * re + y * im), scale * (y * re - x * im)};
   }
   /// What it yields under a steady force, Z / K: as much as so many seconds of string.
   [[nodiscard]] double compliance_s() const noexcept { return per_mass_per_s / std::pow(2 * std::numbers::pi * frequency_Hz, 2); }
