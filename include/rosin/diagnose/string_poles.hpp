@@ -31,6 +31,11 @@ inline std::complex<double> mode_zeros(const pluck_scene& scene, std::complex<do
   return value;
 }
 
+/// D(s), times the polynomials of the ends' modes: entire around the roots that are sought.
+inline std::complex<double> characteristic(const pluck_scene& scene, std::complex<double> s, double strength) {
+  return loop_determinant(scene, s, strength) * mode_zeros(scene, s, s, 1e300);
+}
+
 /// One Aberth sweep over the roots that are not settled yet; returns the largest correction relative to the spacing.
 inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>& roots, std::vector<bool>& settled,
                     double strength, double spacing) {
@@ -39,10 +44,7 @@ inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>&
   for (std::size_t i = 0; i < roots.size(); ++i) {
     if (settled[i]) continue;
     const std::complex<double> s = roots[i], h(0, 1e-4 * spacing);
-    const auto characteristic = [&](std::complex<double> at) {  // entire around the roots that are sought
-      return loop_determinant(scene, at, strength) * mode_zeros(scene, at, s, 10 * spacing);
-    };
-    const std::complex<double> above = characteristic(s + h), below = characteristic(s - h);
+    const std::complex<double> above = characteristic(scene, s + h, strength), below = characteristic(scene, s - h, strength);
     const std::complex<double> newton = (above + below) * h * plain::reciprocal(above - below);  // value over slope
     std::complex<double> repulsion = 0;
     double nearest = spacing * spacing;
