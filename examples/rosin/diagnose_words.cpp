@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -34,6 +33,13 @@ nominal_errors errors_of(const rosin::rig_values& v) {
 std::string value_of(const missing_effect& m, const std::string& name, double factor = 1, const char* form = "%.3g") {
   for (const auto& p : m.parameters)
     if (p.name == name) return in_digits(factor * p.value, form);
+  return "?";
+}
+
+std::string resonance_of(const missing_effect& m) {
+  for (const auto& p : m.parameters)
+    if (p.name == "frequency_Hz")
+      return p.value < 1000 ? in_digits(p.value, "%.4g") + " Hz" : in_digits(p.value / 1000, "%.4g") + " kHz";
   return "?";
 }
 
@@ -89,10 +95,6 @@ diagnosed_value in_si(const std::string& name, double v, double sd, const rosin:
 
 std::string statement_of(const missing_effect& m) {
   const auto v = [&](const char* name, double factor = 1, const char* form = "%.3g") { return value_of(m, name, factor, form); };
-  const auto resonance = [&] {
-    const bool low = std::strtod(v("frequency_Hz", 1, "%.9g").c_str(), nullptr) < 1000;
-    return low ? v("frequency_Hz", 1, "%.4g") + " Hz" : v("frequency_Hz", 1e-3, "%.4g") + " kHz";
-  };
   if (m.effect == "bending-stiffness") return "The string is stiff: B = " + v("bending_stiffness_Nm2") + " N m^2.";
   if (m.effect == "frequency-dependent-loss")
     return "Loss grows with frequency: 1/Q rises by " + v("loss_internal_s", 1e3) + " per kHz.";
@@ -105,7 +107,7 @@ std::string statement_of(const missing_effect& m) {
   if (m.effect == "point-damper")
     return "Something damps the string at " + v("position", 1, "%.4f") + " of its length: " + v("resistance_Ns_m") + " N s/m.";
   if (m.effect == "support-resonance")
-    return "The " + m.end + " termination is not rigid: it resonates at " + resonance() + " (Q " + v("q") + ", " +
+    return "The " + m.end + " termination is not rigid: it resonates at " + resonance_of(m) + " (Q " + v("q") + ", " +
            v("mass_kg", 1e3) + " g).";
   if (m.effect == "sympathetic-string")
     return "Another string rings along at the " + m.end + " termination: " + v("frequency_Hz", 1, "%.5g") + " Hz (Q " + v("q") +
@@ -117,7 +119,7 @@ std::string statement_of(const missing_effect& m) {
            " the string against turning: clamped to " + v("clamping", 100) + " %.";
   if (m.effect == "ac-coupling") return "Both channels are AC coupled at " + v("cutoff_Hz") + " Hz.";
   if (m.effect == "sensor-resonance")
-    return "The " + m.channel + " transducer itself resonates at " + resonance() + " (Q " + v("q") + ").";
+    return "The " + m.channel + " transducer itself resonates at " + resonance_of(m) + " (Q " + v("q") + ").";
   if (m.effect == "channel-skew") {
     const bool late =
         std::none_of(m.parameters.begin(), m.parameters.end(), [](const auto& p) { return p.name == "skew_s" && p.value < 0; });
@@ -137,7 +139,7 @@ std::string statement_of(const missing_effect& m) {
     return "Torsion is not as declared: " + v("speed_ratio") + " times as fast, " + v("impedance_ratio") +
            " times the impedance, Q " + v("q") + ".";
   if (m.effect == "rod-resonance")
-    return "The rod gives way: it resonates at " + resonance() + " (Q " + v("q") + ", " + v("mass_kg", 1e3) + " g).";
+    return "The rod gives way: it resonates at " + resonance_of(m) + " (Q " + v("q") + ", " + v("mass_kg", 1e3) + " g).";
   if (m.effect == "finite-contact-width") return "The bow touches the string over " + v("width_m", 1e3) + " mm.";
   if (m.effect == "speed-ripple")
     return "The speed of the bow ripples at " + v("frequency_Hz", 1, "%.4g") + " Hz by " + v("relative", 100) + " %.";

@@ -177,10 +177,8 @@ inline std::optional<odd_pluck> against(pluck_diagnosis others, const pluck_take
 
 /// Plucks at places of their own never contradict each other, as every place is free: of three or more the one that is farther
 /// from where it is declared than a notebook could be, if the others are not.
-inline std::optional<std::size_t> misplaced(const std::vector<pluck_take>& takes, const pluck_guess& guess,
-                                            const pluck_options& options) {
+inline std::optional<std::size_t> misplaced(const std::vector<pluck_take>& takes, const outcome<pluck_fit_result>& fit) {
   constexpr double most_off = 0.02, alike = 0.01;
-  const auto fit = fit_declared(takes, guess, options);
   if (!fit || fit->horizon_periods < 1e8 || fit->layout.positions().size() < takes.size()) return std::nullopt;
   const auto off = [&](std::size_t t) { return fit->value[fit->layout.position(t)] - takes[t].position; };
   for (std::size_t i = 0; i < takes.size(); ++i) {
@@ -192,11 +190,8 @@ inline std::optional<std::size_t> misplaced(const std::vector<pluck_take>& takes
   return std::nullopt;
 }
 
-/// What the declared model leaves of the worst of these takes; 1 where it cannot be fitted to all of their decay.
-inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options) {
-  const auto fit = fit_declared(takes, guess, options);
-  return fit && fit->horizon_periods > 1e8 ? worst(*fit) : 1.0;
-}
+/// What the declared model leaves of the worst take; 1 where it cannot be fitted to all of their decay.
+inline double worst_of(const outcome<pluck_fit_result>& fit) { return fit && fit->horizon_periods > 1e8 ? worst(*fit) : 1.0; }
 
 }  // namespace detail
 
@@ -212,12 +207,14 @@ inline double worst_of(const std::vector<pluck_take>& takes, const pluck_guess& 
     if (i < from.size()) from.erase(from.begin() + static_cast<std::ptrdiff_t>(i));
     return from;
   };
-  const auto elsewhere = detail::misplaced(all, guess, options);
+  const auto fit_of = [&](const std::vector<pluck_take>& some) { return detail::fit_declared(some, guess, options); };
+  const auto together = fit_of(all);
+  const auto elsewhere = detail::misplaced(all, together);
   std::size_t which = elsewhere.value_or(0);
   double least = 1;
   for (std::size_t i = 0; i < all.size() && !elsewhere; ++i)
-    if (const double left = detail::worst_of(without(all, i), guess, options); left < least) least = left, which = i;
-  if (!elsewhere && !(least < far_better * detail::worst_of(all, guess, options))) return std::nullopt;
+    if (const double left = detail::worst_of(fit_of(without(all, i))); left < least) least = left, which = i;
+  if (!elsewhere && !(least < far_better * detail::worst_of(together))) return std::nullopt;
   std::vector<pluck_take> fitted = without(takes, which),
                           kept = which < takes.size() ? held : without(held, which - takes.size());
   if (kept.empty() && fitted.size() > 1) kept.push_back(std::move(fitted.back())), fitted.pop_back();

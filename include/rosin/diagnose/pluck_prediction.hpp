@@ -84,7 +84,6 @@ struct seen_take {
 /// By its first `most_periods`; nothing where no release is found. `most`: freedom::release_only where the place is exact.
 inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit, const pluck_take& held,
                                     double most_periods = 1e9, freedom most = freedom::release_and_place) {
-  constexpr double most_off = 0.005;  // what a rig file that says nothing is taken to mean (rig_values.hpp)
   seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options, data.guess.ends)}, {}, {}};
   const auto start = find_start(out.data.takes, data.guess);
   if (!start) return std::nullopt;
@@ -124,7 +123,8 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
                         {1e-3, 1e-3});
   };
   fit_with(most);
-  if (!(std::abs(out.fit.value[out.data.layout.position(0)] - place) <= most_off)) fit_with(freedom::release_only);
+  if (!(std::abs(out.fit.value[out.data.layout.position(0)] - place) <= data.guess.position_tolerance))
+    fit_with(freedom::release_only);
   return out;
 }
 
