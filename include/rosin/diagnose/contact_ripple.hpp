@@ -71,16 +71,63 @@ struct tone_sums {
 
 }  // namespace detail
 
-/// The tone that explains most, from what fits twice into the record up to `highest_Hz`.
-[[nodiscard]] inline tone_fit find_tone(const std::vector<tone_rows>& takes, double highest_Hz = 900) {
+/// Where a tone is sought.
+struct tone_band {
+  double highest_Hz = 900;
+  double pitch_Hz = 0;  ///< of a string that repeats itself; 0: nothing does
+
+  /// Near a multiple of the pitch, or where friction flattens it to: the string's own doing.
+  [[nodiscard]] bool is_its_own(double f) const noexcept {
+    if (!(pitch_Hz > 0)) return false;
+    const double n = std::max(1.0, std::round(f / pitch_Hz));
+    return f > (n > 1 ? 0.95 : 0.75) * n * pitch_Hz && f < 1.02 * n * pitch_Hz;
+  }
+};
+
+namespace detail {
+
+/// Neighbours put together, as far apart as a tone hardly moves on between them: the same sums from fewer rows.
+[[nodiscard]] inline tone_rows gathered(const tone_rows& r, double within_s) {
+  tone_rows out;
+  out.rate_Hz = r.rate_Hz;
+  const auto reach = static_cast<std::size_t>(within_s * r.rate_Hz);
+  std::vector<double> residual, carrier;
+  for (std::size_t i = 0; i < r.sample.size();) {
+    const std::size_t first = r.sample[i];
+    double power = 0, product = 0;
+    std::size_t last = first;
+    for (; i < r.sample.size() && r.sample[i] - first <= reach; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const double c = r.weight[k] * r.carrier[k];
+      last = r.sample[i], power += c * c, product += c * r.weight[k] * r.residual[k];
+    }
+    carrier.push_back(std::sqrt(power)), residual.push_back(power > 0 ? product / carrier.back() : 0);
+    out.sample.push_back((first + last) / 2);
+  }
+  const auto n = static_cast<Eigen::Index>(residual.size());
+  out.residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), n);
+  out.carrier = Eigen::Map<const Eigen::VectorXd>(carrier.data(), n);
+  out.weight = Eigen::VectorXd::Ones(n);
+  return out;
+}
+
+}  // namespace detail
+
+/// The tone that explains most, of those that fit twice into the record.
+[[nodiscard]] inline tone_fit find_tone(const std::vector<tone_rows>& takes, const tone_band& band = {}) {
   double length = 0;
-  for (const auto& t : takes)
+  std::vector<tone_rows> coarse;
+  for (const auto& t : takes) {
+    coarse.push_back(detail::gathered(t, 0.1 / band.highest_Hz));
     if (!t.sample.empty()) length = std::max(length, static_cast<double>(t.sample.back() - t.sample.front()) / t.rate_Hz);
+  }
   tone_fit best;
   if (!(length > 0)) return best;
   const double step = 0.25 / length;
-  for (double f = 2 / length; f < highest_Hz; f += step)
-    if (const double e = detail::explained_at(takes, f); e > best.explained) best.explained = e, best.frequency_Hz = f;
+  for (double f = 2 / length; f < band.highest_Hz; f += step)
+    if (const double e = band.is_its_own(f) ? 0.0 : detail::explained_at(coarse, f); e > best.explained)
+      best.explained = e, best.frequency_Hz = f;
+  best.explained = detail::explained_at(takes, best.frequency_Hz);
   for (double width = step / 2; width > step / 500; width /= 2)
     for (const double f : {best.frequency_Hz - width, best.frequency_Hz + width})
       if (const double e = detail::explained_at(takes, f); e > best.explained) best.explained = e, best.frequency_Hz = f;
@@ -139,15 +186,17 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
 
 }  // namespace detail
 
-/// Three quarters of the lowest pitch: what repeats with the string itself is its own doing.
-[[nodiscard]] inline double below_the_pitch(const std::vector<stick_record>& records) {
+/// The lowest pitch of the records' string at rest.
+[[nodiscard]] inline double lowest_pitch_Hz(const std::vector<stick_record>& records) {
   double longest = 1e-4;
   for (const auto& r : records) longest = std::max(longest, r.take().delay_s[0] + r.take().delay_s[1]);
-  return 0.75 * 0.5 / longest;
+  return 0.5 / longest;
 }
 
-/// The rod's speed is not steady: a tone in the surface's velocity while it sticks, whatever the force.
+/// The rod's speed is not steady: a tone in the surface's velocity while it sticks, whatever the force. It sticks for most of a
+/// period, so that tones above the pitch show as well.
 [[nodiscard]] inline contact_hypothesis speed_ripple_hypothesis(stick_bench& bench) {
+  constexpr double highest_ripple_Hz = 1500;
   contact_hypothesis h{.effect = "speed-ripple"};
   h.statistic = "stick-fluctuation";
   const auto& s = bench.fit().solution;
@@ -158,7 +207,7 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
     takes.push_back({s.residual[t], Eigen::VectorXd::Constant(rows.target.size(), speed),
                      detail::student_row_factors(s.residual[t], s.scale), rows.sample, bench.records()[t].take().rate_Hz});
   }
-  auto tone = find_tone(takes, below_the_pitch(bench.records()));
+  auto tone = find_tone(takes, {highest_ripple_Hz, lowest_pitch_Hz(bench.records())});
   stick_design d = bench.declared();
   for (std::size_t t = 0; t < takes.size(); ++t)
     for (const double turn : {0.0, 0.5 * std::numbers::pi}) {

@@ -23,7 +23,7 @@ class slip_bench {
 public:
   /// `known_mu`: how well a coefficient of friction is known from the reconstruction, at best.
   slip_bench(stick_bench& sticks, const std::vector<contact_take>& takes)
-      : records_{slip_records(sticks, takes)}, pitch_{below_the_pitch(sticks.records())} {
+      : records_{slip_records(sticks, takes)}, pitch_{lowest_pitch_Hz(sticks.records())} {
     std::size_t samples = 0;
     for (std::size_t t = 0; t < records_.size(); ++t) {
       samples += records_[t].slips.sample.size();
@@ -135,7 +135,8 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   for (std::size_t t = 0; t < bench.records().size(); ++t)
     takes.push_back({s.residual[t], bench.predicted(t), detail::student_row_factors(s.residual[t], s.scale),
                      bench.declared().design.rows[t].sample, bench.records()[t].rate_Hz});
-  auto tone = find_tone(takes, bench.pitch_Hz());
+  // slips come once a period, so that faster ripples look like slower ones
+  auto tone = find_tone(takes, {0.75 * bench.pitch_Hz()});
   stick_design d = bench.declared().design;
   bench.add_tone(d, tone.frequency_Hz);
   const auto fit = fit_design(d, bench.floor());

@@ -37,7 +37,9 @@ class wide_record {
 
 public:
   wide_record(const contact_take& take, const stick_record& record)
-      : take_{take}, near_{record.known(take.near_N), take.rate_Hz}, far_{record.known(take.far_N), take.rate_Hz} {}
+      : take_{take}, edge_Hz_{record.window().edge_Hz}, near_{record.known(take.near_N), take.rate_Hz}, far_{record.known(
+                                                                                                                 take.far_N),
+                                                                                                             take.rate_Hz} {}
 
   [[nodiscard]] wide_motion at(double half_delay_s, const smooth_window& window, const torsion_values& values,
                                torsion_damping damping = torsion_damping::constant_q) {
@@ -91,7 +93,8 @@ private:
              (take_.delay_s[1] - half_delay_s) / v.speed_ratio},
             take_.impedance_Ns_m * v.impedance_ratio,
             v.q,
-            damping};
+            damping,
+            torsion_modes::seen_below(edge_Hz_, (take_.delay_s[0] + take_.delay_s[1]) / v.speed_ratio)};
   }
 
   /// Row r of a table: columns F_1, F_2 in 2 r, 2 r + 1.
@@ -163,6 +166,7 @@ private:
   }
 
   contact_take take_;
+  double edge_Hz_;
   contact_signal<> near_, far_;
 };
 

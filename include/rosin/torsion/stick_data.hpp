@@ -26,6 +26,9 @@ struct stick_take {
   double velocity_sd_m_s = 0;       ///< noise of the reconstruction
   double edge_Hz = 0;               ///< where the reconstruction's band ends; 0: 0.45 of the rate
   double start_s = 0.03;            ///< left out at the beginning, a quarter of the record at most
+
+  /// Through which it is seen while it sticks.
+  [[nodiscard]] smooth_window window() const noexcept { return {edge_Hz > 0 ? edge_Hz : 0.45 * rate_Hz}; }
 };
 
 /// A take with its force transformed and its velocity smoothed and taken against the rod.
@@ -46,7 +49,7 @@ public:
   [[nodiscard]] std::size_t origin() const noexcept { return begin_; }
   [[nodiscard]] std::size_t size() const noexcept { return relative_.size(); }
   [[nodiscard]] const stick_take& take() const noexcept { return take_; }
-  [[nodiscard]] smooth_window window() const noexcept { return {take_.edge_Hz > 0 ? take_.edge_Hz : 0.45 * take_.rate_Hz}; }
+  [[nodiscard]] smooth_window window() const noexcept { return take_.window(); }
   [[nodiscard]] std::size_t reach() const noexcept { return window().reach(take_.rate_Hz); }
 
   /// The centre's velocity less the rod's, smoothed.

@@ -44,9 +44,9 @@ struct torsion_at_contact {
   double rest_m_N = 0;  ///< compliance of the modes beyond those that are summed
 
   torsion_at_contact(const stick_take& take, const torsion_values& v, torsion_damping d)
-      : guide{torsion_of(take.delay_s, take.impedance_Ns_m, v.speed_ratio, v.impedance_ratio, v.q)}, modes{guide.delay_s,
-                                                                                                           guide.impedance_Ns_m,
-                                                                                                           guide.q, 40},
+      : guide{torsion_of(take.delay_s, take.impedance_Ns_m, v.speed_ratio, v.impedance_ratio, v.q)},
+        modes{guide.delay_s, guide.impedance_Ns_m, guide.q,
+              torsion_modes::seen_below(take.window().edge_Hz, guide.delay_s[0] + guide.delay_s[1])},
         damping{d}, rest_m_N{d == torsion_damping::viscous_modes ? modes.rest_m_N() : 0.0} {}
   [[nodiscard]] std::complex<double> operator()(double f) const noexcept {
     if (damping == torsion_damping::constant_q) return guide(f);

@@ -12,6 +12,7 @@
 //
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -25,6 +26,11 @@ struct torsion_modes {
   double impedance_Ns_m = 0;        ///< referred to the surface
   double q = 15;
   int modes = 60;
+
+  /// How many to sum for what is seen below a frequency: those above 1.25 of it are a compliance there. 40 at least, 400 at most.
+  [[nodiscard]] static int seen_below(double frequency_Hz, double one_way_s) noexcept {
+    return static_cast<int>(std::clamp(std::ceil(2.5 * frequency_Hz * one_way_s), 40.0, 400.0));
+  }
 
   /// Surface velocity for 1 N at a frequency in Hz, m/s per N.
   [[nodiscard]] std::complex<double> operator()(double frequency_Hz) const noexcept {

@@ -25,17 +25,17 @@ public:
     complex aa = 0, bb = 0, across = 0;
   };
 
-  /// `delay_s`: torsional, from a to the near end, between both, from b to the far end.
-  torsion_pair(const std::array<double, 3>& delay_s, double impedance_Ns_m, double q, torsion_damping damping)
+  /// `delay_s`: torsional, from a to the near end, between both, from b to the far end. `modes`: viscous ones to sum.
+  torsion_pair(const std::array<double, 3>& delay_s, double impedance_Ns_m, double q, torsion_damping damping, int modes = 40)
       : a_{delay_s[0]}, b_{delay_s[0] + delay_s[1]}, all_{delay_s[0] + delay_s[1] + delay_s[2]},
         impedance_{impedance_Ns_m}, q_{q}, damping_{damping} {
     if (damping == torsion_damping::constant_q) return;
     rest_ = {static_compliance(a_, a_), static_compliance(b_, b_), static_compliance(a_, b_)};
-    for (std::size_t n = 0; n < modes; ++n) {
-      const double turn = static_cast<double>(n + 1) * std::numbers::pi / all_, at_a = std::sin(turn * a_),
-                   at_b = std::sin(turn * b_), weight = 2 / (impedance_ * all_);
-      modes_[n] = {turn, weight * at_a * at_a, weight * at_b * at_b, weight * at_a * at_b};
-      for (std::size_t k = 0; k < 3; ++k) rest_[k] -= modes_[n][k + 1] / (turn * turn);
+    for (int n = 1; n <= modes; ++n) {
+      const double turn = n * std::numbers::pi / all_, at_a = std::sin(turn * a_), at_b = std::sin(turn * b_),
+                   weight = 2 / (impedance_ * all_);
+      modes_.push_back({turn, weight * at_a * at_a, weight * at_b * at_b, weight * at_a * at_b});
+      for (std::size_t k = 0; k < 3; ++k) rest_[k] -= modes_.back()[k + 1] / (turn * turn);
     }
   }
 
@@ -57,8 +57,6 @@ public:
   }
 
 private:
-  static constexpr std::size_t modes = 40;
-
   [[nodiscard]] double static_compliance(double x, double y) const noexcept {
     return std::min(x, y) * (all_ - std::max(x, y)) / (all_ * impedance_);
   }
@@ -66,7 +64,7 @@ private:
   double a_, b_, all_, impedance_, q_;
   torsion_damping damping_;
   std::array<double, 3> rest_{};
-  std::array<std::array<double, 4>, modes> modes_{};
+  std::vector<std::array<double, 4>> modes_;
 };
 
 }  // namespace rosin

@@ -48,6 +48,27 @@ TEST_CASE("ripple: noise alone predicts nothing") {
   CHECK(rosin::find_tone({}).explained == 0);
 }
 
+TEST_CASE("ripple: above the pitch as well, but not where the string repeats itself") {
+  const rosin::tone_band band{500, 100};
+  const std::vector<rosin::tone_rows> between{patches(0.03, 231.7, 0.1, 5), patches(0.03, 231.7, 0.1, 6)};
+  CHECK(rosin::find_tone(between, band).frequency_Hz == doctest::Approx(231.7).epsilon(0.002));
+  for (const double own : {92.0, 100.0, 196.0, 201.0}) {
+    CHECK(band.is_its_own(own));
+    const std::vector<rosin::tone_rows> on{patches(0.03, own, 0.1, 7), patches(0.03, own, 0.1, 8)};
+    CHECK_FALSE(band.is_its_own(rosin::find_tone(on, band).frequency_Hz));
+  }
+  for (const double other : {40.0, 74.0, 104.0, 180.0, 231.7}) CHECK_FALSE(band.is_its_own(other));
+}
+
+TEST_CASE("ripple: rows put together give the same sums as long as a tone hardly moves on between them") {
+  auto all = patches(0.03, 97.3, 0.1, 9);
+  for (Eigen::Index i = 0; i < all.weight.size(); ++i) all.weight[i] = 0.5 + 0.5 * std::sin(0.3 * static_cast<double>(i));
+  const auto few = rosin::detail::gathered(all, 4e-4);
+  CHECK(few.sample.size() == 6 * 100);  // of 30 in a patch
+  for (const double f : {20.0, 97.3, 250.0})
+    CHECK(rosin::detail::explained_at({few}, f) == doctest::Approx(rosin::detail::explained_at({all}, f)).epsilon(0.03));
+}
+
 TEST_CASE("ripple: a rod whose speed is not steady") {
   auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
   slow.speed_Hz = fast.speed_Hz = 143;

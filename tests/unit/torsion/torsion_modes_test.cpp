@@ -54,3 +54,18 @@ TEST_CASE("torsion modes: on a grid of frequencies they are what they are at eac
   for (std::size_t k = 0; k < grid.size(); k += 97)
     CHECK(std::abs(grid[k] - modes(0.7 * static_cast<double>(k))) <= 1e-11 * std::abs(grid[k]));
 }
+
+TEST_CASE("torsion modes: as many are summed as are seen, however low the string; what is left is a compliance") {
+  constexpr double edge_Hz = 57600;
+  for (const double pitch_Hz : {40.0, 80.0, 660.0}) {
+    const double low = 0.5 / pitch_Hz / 6.9;
+    const rosin::torsion_modes all{{0.3 * low, 0.7 * low}, 0.6125, 15, 4000};
+    auto seen = all;
+    seen.modes = rosin::torsion_modes::seen_below(edge_Hz, low);
+    for (const double f : {0.2, 0.4, 0.6}) {
+      const auto rest = std::complex<double>(0, 2 * std::numbers::pi * f * edge_Hz * (seen.rest_m_N() - all.rest_m_N()));
+      const auto exact = all(f * edge_Hz);
+      CHECK(std::abs(seen(f * edge_Hz) + rest - exact) < 0.03 * std::abs(exact));
+    }
+  }
+}
