@@ -59,6 +59,13 @@ struct tone_sums {
   return s;
 }
 
+[[nodiscard]] inline double longest_s(const std::vector<tone_rows>& takes) {
+  double length = 0;
+  for (const auto& t : takes)
+    if (!t.sample.empty()) length = std::max(length, static_cast<double>(t.sample.back() - t.sample.front()) / t.rate_Hz);
+  return length;
+}
+
 [[nodiscard]] inline double explained_at(const std::vector<tone_rows>& takes, double f) {
   double sum = 0;
   for (const auto& t : takes) {
@@ -115,12 +122,9 @@ namespace detail {
 
 /// The tone that explains most, of those that fit twice into the record.
 [[nodiscard]] inline tone_fit find_tone(const std::vector<tone_rows>& takes, const tone_band& band = {}) {
-  double length = 0;
+  const double length = detail::longest_s(takes);
   std::vector<tone_rows> coarse;
-  for (const auto& t : takes) {
-    coarse.push_back(detail::gathered(t, 0.1 / band.highest_Hz));
-    if (!t.sample.empty()) length = std::max(length, static_cast<double>(t.sample.back() - t.sample.front()) / t.rate_Hz);
-  }
+  for (const auto& t : takes) coarse.push_back(detail::gathered(t, 0.1 / band.highest_Hz));
   tone_fit best;
   if (!(length > 0)) return best;
   const double step = 0.25 / length;
@@ -159,18 +163,28 @@ namespace detail {
 
 namespace detail {
 
+/// Weighted squares of the residuals, and how many there are.
+struct tone_power {
+  double rows = 0, power = 0;
+
+  explicit tone_power(const std::vector<tone_rows>& takes) {
+    for (const auto& t : takes) {
+      rows += static_cast<double>(t.sample.size());
+      power += t.weight.cwiseProduct(t.residual).squaredNorm();
+    }
+  }
+  [[nodiscard]] double without(double explained, double scale) const {
+    return std::max(power - explained, rows * scale * scale * 1e-6);
+  }
+};
+
 /// Gains of a Student likelihood from weighted squares: what a tone takes from the residual's power, at the final weights.
 inline void finish_tone(const std::vector<tone_rows>& takes, double scale, double share, tone_fit& tone, contact_hypothesis& h) {
-  double rows = 0, power = 0, length = 0;
-  for (const auto& t : takes) {
-    rows += static_cast<double>(t.sample.size());
-    power += t.weight.cwiseProduct(t.residual).squaredNorm();
-    if (!t.sample.empty()) length = std::max(length, static_cast<double>(t.sample.back() - t.sample.front()) / t.rate_Hz);
-  }
-  const double floor = rows * scale * scale * 1e-6, left = std::max(power - tone.explained, floor),
-               predicted = std::max(power - tone_prediction(takes, tone.frequency_Hz), floor);
-  h.gain = 0.5 * share * rows * std::log(power / left);
-  h.held_out_gain = 0.5 * share * rows * std::log(power / predicted);
+  const tone_power all(takes);
+  const double rows = all.rows, length = longest_s(takes), left = all.without(tone.explained, scale),
+               predicted = all.without(tone_prediction(takes, tone.frequency_Hz), scale);
+  h.gain = 0.5 * share * rows * std::log(all.power / left);
+  h.held_out_gain = 0.5 * share * rows * std::log(all.power / predicted);
   const double noise = std::sqrt(left / std::max(1.0, rows)), effective = std::max(1.0, share * rows);
   double carrier = 0;
   for (const auto& t : takes) carrier += t.weight.cwiseProduct(t.carrier).squaredNorm();

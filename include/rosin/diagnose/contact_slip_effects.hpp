@@ -125,6 +125,16 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   h.statistic = "friction-residual";
 }
 
+/// Slips may come once a period, so that a faster ripple looks like a slower one: it has to be likelier, by `rarer` nats.
+[[nodiscard]] inline tone_fit likely_tone(const std::vector<tone_rows>& takes, double pitch_Hz, double scale, double share) {
+  constexpr double rarer = 10, highest_ripple_Hz = 900;
+  const tone_fit slow = find_tone(takes, {0.75 * pitch_Hz}), any = find_tone(takes, {highest_ripple_Hz, pitch_Hz});
+  const tone_power all(takes);
+  const double likelier =
+      0.5 * share * all.rows * std::log(all.without(slow.explained, scale) / all.without(any.explained, scale));
+  return likelier > rarer ? any : slow;
+}
+
 }  // namespace detail
 
 [[nodiscard]] inline contact_hypothesis normal_ripple_hypothesis(const slip_bench& bench) {
@@ -135,8 +145,7 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   for (std::size_t t = 0; t < bench.records().size(); ++t)
     takes.push_back({s.residual[t], bench.predicted(t), detail::student_row_factors(s.residual[t], s.scale),
                      bench.declared().design.rows[t].sample, bench.records()[t].rate_Hz});
-  // slips come once a period, so that faster ripples look like slower ones
-  auto tone = find_tone(takes, {0.75 * bench.pitch_Hz()});
+  auto tone = detail::likely_tone(takes, bench.pitch_Hz(), s.scale, bench.declared().fit.share);
   stick_design d = bench.declared().design;
   bench.add_tone(d, tone.frequency_Hz);
   const auto fit = fit_design(d, bench.floor());

@@ -189,6 +189,8 @@ template <std::size_t N>
   std::vector<std::vector<double>> force;
   for (auto& r : bench.records()) force.push_back(r.force_N());
   const double rate = bench.records().front().take().rate_Hz;
+  constexpr double lowest_Hz = 80, lowest_q = 3.9, highest_q = 300;
+  const double highest_Hz = 0.16 * rate;
   double best = 0, f_best = 1000, q_best = 10;
   const auto attempt = [&]<std::size_t N>(double f0, const std::array<double, N>& qs) {
     std::array<std::vector<std::vector<double>>, N> columns;
@@ -202,17 +204,17 @@ template <std::size_t N>
       if (size > 0 && gain > best) best = gain, f_best = f0, q_best = qs[k];
     }
   };
-  for (double f0 = 120; f0 < 0.16 * rate; f0 *= 1.03) attempt(f0, std::array{4.0, 12.0, 40.0});
+  for (double f0 = 120; f0 < highest_Hz; f0 *= 1.03) attempt(f0, std::array{4.0, 12.0, 40.0});
   for (double step = 0.02; step > 2e-4; step /= 2)
     for (const auto& [i, j] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}) {
       const double f0 = f_best * std::exp(i * step), q = q_best * std::exp(15 * j * step);
-      if (f0 > 80 && f0 < 0.16 * rate && q > 3.9 && q < 80) attempt(f0, std::array{q});
+      if (f0 > lowest_Hz && f0 < highest_Hz && q > lowest_q && q < highest_q) attempt(f0, std::array{q});
     }
   if (!(best > 0)) return detail::nothing(bench, h);
   const Eigen::Vector2d start(std::log(f_best), std::log(q_best));
   const auto found =
-      detail::fit_family(bench, detail::rod_mobility, start, 1 / 5e-3, Eigen::Vector2d(std::log(80.0), std::log(3.9)),
-                         Eigen::Vector2d(std::log(0.16 * rate), std::log(80.0)), 5);
+      detail::fit_family(bench, detail::rod_mobility, start, 1 / 5e-3, Eigen::Vector2d(std::log(lowest_Hz), std::log(lowest_q)),
+                         Eigen::Vector2d(std::log(highest_Hz), std::log(highest_q)), 5);
   detail::settle_hypothesis(bench, found.fit, h);
   const double f0 = std::exp(found.theta[0]), q = std::exp(found.theta[1]), mass = found.size > 0 ? 1 / found.size : 1e9;
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -222,7 +224,7 @@ template <std::size_t N>
                     {"mass_kg", mass, mass * std::hypot(mass * sd[0], contact_faults::rod_mass)}};
   constexpr double heaviest_kg = 0.15;  // modes of rods have grams
   // inside the range that was searched
-  h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 79;
+  h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 0.98 * highest_q;
   return h;
 }
 

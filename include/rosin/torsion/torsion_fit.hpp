@@ -129,20 +129,22 @@ struct torsion_state {
   return part;
 }
 
-/// The likeliest starting points, best first.
+/// The likeliest starting points, best first. Ratios that strings have hardly been seen to have must be likelier by `rarer`, as
+/// what merely yields looks like fast torsion.
 [[nodiscard]] inline std::vector<torsion_values> torsion_starts(const stick_record& whole, std::size_t wanted) {
   stick_record record(first_part(whole, 12000));
   const std::size_t begin = static_cast<std::size_t>(std::lround(record.take().start_s * record.take().rate_Hz)),
                     end = record.end();
   const auto& slope = record.compliance()[0];
+  constexpr double rarer = 200;
   std::vector<std::pair<double, torsion_values>> found;
   for (const double q : {13.0, 35.0})
-    for (double speed = 4.2; speed < 11.5; speed *= 1.02) {
+    for (double speed = 2.4; speed < 20; speed *= 1.02) {
       const auto shape = record.force_through(torsion_at_contact(record.take(), {speed, 3.5, q}, torsion_damping::constant_q));
       double size = 1;
       const double cost =
           cauchy_cost(record.relative_m_s(), shape, slope, begin, end, std::abs(record.take().rod_speed_m_s), size);
-      if (size > 0.05) found.push_back({cost, {speed, 3.5 / size, q}});
+      if (size > 0.05) found.push_back({cost + (speed > 4.2 && speed < 11.5 ? 0 : rarer), {speed, 3.5 / size, q}});
     }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<torsion_values> starts;

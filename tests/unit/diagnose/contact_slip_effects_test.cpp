@@ -30,6 +30,21 @@ TEST_CASE("contact slip effects: a normal force that is not steady shows in slip
   CHECK(rest.declared().residual() < 0.5 * bench.declared().residual());
 }
 
+TEST_CASE("contact slip effects: a normal force that ripples faster than the string sounds") {
+  auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
+  slow.normal_Hz = fast.normal_Hz = 790;
+  slow.normal_relative = fast.normal_relative = 0.08;
+  const auto a = contact_rigs::play(contact_rigs::curve(), slow, contact_rigs::rolls, 55),
+             b = contact_rigs::play(contact_rigs::curve(), fast, contact_rigs::rolls, 57);
+  const std::vector<rosin::contact_take> takes{a.take(), b.take()};
+  rosin::stick_bench sticks(takes, contact_rigs::declared());
+  const auto h = rosin::normal_ripple_hypothesis(rosin::slip_bench(sticks, takes));
+  CHECK(h.decided);
+  CHECK(h.gain > 60);
+  CHECK(h.parameters[0].value == doctest::Approx(790).epsilon(0.002));
+  CHECK(h.parameters[1].value == doctest::Approx(0.08).epsilon(0.1));
+}
+
 TEST_CASE(
     "contact slip effects: where sensors lost the mean force, strokes may be off by a constant, and a ripple's size holds that "
     "doubt") {

@@ -71,6 +71,18 @@ TEST_CASE("torsion fit: speed to 1 %, impedance to 5 %, Q to 20 %, without being
   }
 }
 
+TEST_CASE("torsion fit: wound strings that turn slowly, slack ones that turn fast") {
+  for (const double speed : {3.2, 14.0}) {
+    const rosin::modal_torsion torsion{speed, 3.0, 30};
+    const std::vector<reconstructed> strokes{stroke(torsion, 0.23, 0.2, 0.3, 0.4e-3, 7),
+                                             stroke(torsion, 0.23, 0.14, 0.4, 0.4e-3, 70)};
+    const auto fit = rosin::fit_torsion(takes_of(strokes, 0.23));
+    REQUIRE(fit);
+    CHECK(fit->decided());
+    CHECK(fit->value.speed_ratio == doctest::Approx(speed).epsilon(0.01));
+  }
+}
+
 TEST_CASE("torsion fit: says what the data cannot tell") {
   SUBCASE("a string that does not turn") {
     const std::vector<reconstructed> strokes{stroke({}, 0.3, 0.2, 0.3, 0.4e-3, 3)};
