@@ -83,11 +83,11 @@ struct tone_band {
   double highest_Hz = 900;
   double pitch_Hz = 0;  ///< of a string that repeats itself; 0: nothing does
 
-  /// Near a multiple of the pitch, or where friction flattens it to: the string's own doing.
-  [[nodiscard]] bool is_its_own(double f) const noexcept {
+  /// Near a multiple of the pitch, or where friction flattens it to: the string's own doing. `blur_Hz`: how near, at least.
+  [[nodiscard]] bool is_its_own(double f, double blur_Hz = 0) const noexcept {
     if (!(pitch_Hz > 0)) return false;
-    const double n = std::max(1.0, std::round(f / pitch_Hz));
-    return f > (n > 1 ? 0.95 : 0.75) * n * pitch_Hz && f < 1.02 * n * pitch_Hz;
+    const double n = std::max(1.0, std::round(f / pitch_Hz)), own = n * pitch_Hz, flat = n > 1 ? 0.05 : 0.25;
+    return f > own - std::max(flat * own, blur_Hz) && f < own + std::max(0.02 * own, blur_Hz);
   }
 };
 
@@ -129,7 +129,7 @@ namespace detail {
   if (!(length > 0)) return best;
   const double step = 0.25 / length;
   for (double f = 2 / length; f < band.highest_Hz; f += step)
-    if (const double e = band.is_its_own(f) ? 0.0 : detail::explained_at(coarse, f); e > best.explained)
+    if (const double e = band.is_its_own(f, 3 / length) ? 0.0 : detail::explained_at(coarse, f); e > best.explained)
       best.explained = e, best.frequency_Hz = f;
   best.explained = detail::explained_at(takes, best.frequency_Hz);
   for (double width = step / 2; width > step / 500; width /= 2)
@@ -224,13 +224,8 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
   auto tone = find_tone(takes, {highest_ripple_Hz, lowest_pitch_Hz(bench.records())});
   stick_design d = bench.declared();
   for (std::size_t t = 0; t < takes.size(); ++t)
-    for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
-      std::vector<double> wave(bench.records()[t].size());
-      for (std::size_t i = 0; i < wave.size(); ++i)
-        wave[i] = bench.records()[t].take().rod_speed_m_s *
-                  std::sin(2 * std::numbers::pi * tone.frequency_Hz * static_cast<double>(i) / takes[t].rate_Hz + turn);
-      d.add_own(t, wave);
-    }
+    for (const double turn : {0.0, 0.5 * std::numbers::pi})
+      d.add_own(t, detail::rod_wave(bench.records()[t], tone.frequency_Hz, turn));
   const auto fit = fit_design(d, bench.floor_m_s());
   detail::finish_tone(takes, s.scale, fit.share, tone, h);
   const double predicted = h.held_out_gain;

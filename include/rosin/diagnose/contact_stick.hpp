@@ -35,6 +35,15 @@ template <class Row>
   return std::sqrt(power * 2 * window.edge_Hz / (rate_Hz * steps));
 }
 
+/// A tone of the rod's speed at all samples of a record.
+[[nodiscard]] inline std::vector<double> rod_wave(const stick_record& record, double frequency_Hz, double phase) {
+  const stick_take& take = record.take();
+  std::vector<double> wave(record.size());
+  for (std::size_t i = 0; i < wave.size(); ++i)
+    wave[i] = take.rod_speed_m_s * std::sin(2 * std::numbers::pi * frequency_Hz * static_cast<double>(i) / take.rate_Hz + phase);
+  return wave;
+}
+
 }  // namespace detail
 
 /// Records, the samples that stick, and the equation as declared.
@@ -59,6 +68,7 @@ public:
     free_ = fit_torsion(stick_takes(takes), model.torsion);
     mark();
     declare();
+    if (usable() && model.speed_ripple_Hz) follow_ripple();
   }
 
   /// Makes the declared equation anew with this convention of damping.
@@ -222,15 +232,20 @@ private:
     }
     if (model_.speed_ripple_Hz)
       for (std::size_t t = 0; t < records_.size(); ++t)
-        for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
-          std::vector<double> wave(records_[t].size());
-          for (std::size_t i = 0; i < wave.size(); ++i)
-            wave[i] = records_[t].take().rod_speed_m_s * std::sin(2 * std::numbers::pi * *model_.speed_ripple_Hz *
-                                                                      static_cast<double>(i) / records_[t].take().rate_Hz +
-                                                                  turn);
-          d.add_own(t, wave);
-        }
+        for (const double turn : quarter_turns) d.add_own(t, detail::rod_wave(records_[t], *model_.speed_ripple_Hz, turn));
   }
+
+  /// The ripple that was found is the rod's, while the string slips as well.
+  void follow_ripple() {
+    for (std::size_t t = 0; t < records_.size(); ++t) {
+      const Eigen::VectorXd& own = fit_.solution.own[t];
+      for (std::size_t k = 0; k < 2; ++k)
+        detail::add_to(relative_[t], detail::rod_wave(records_[t], *model_.speed_ripple_Hz, quarter_turns[k]),
+                       -own[own.size() - 2 + static_cast<Eigen::Index>(k)]);
+    }
+  }
+
+  static constexpr std::array<double, 2> quarter_turns{0, 0.5 * std::numbers::pi};
 
   std::vector<stick_record> records_;
   std::vector<double> normal_force_N_;

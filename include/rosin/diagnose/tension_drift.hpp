@@ -78,7 +78,7 @@ template <class Physics = full_physics>
   return out;
 }
 
-/// The same for any way to reconstruct: delta(take, relative) is Eq. (12) of a take at that tension. Searched within 4 %.
+/// The same for any way to reconstruct: delta(take, relative) is Eq. (12) of a take at that tension. Searched within 6.4 %.
 template <class Delta>
 [[nodiscard]] tension_drift search_tension_drift(std::size_t takes, Delta&& delta) {
   tension_drift out;
@@ -87,7 +87,7 @@ template <class Delta>
     const auto at = [&](double relative) { return delta(t, relative); };
     double start = 0, least = at(0);
     out.delta_before += least * least;
-    for (int k = -10; k <= 10; ++k)  // the valley is about a hundredth wide
+    for (int k = -16; k <= 16; ++k)  // the valley is about a hundredth wide
       if (const double d = at(0.004 * k); d < least) least = d, start = 0.004 * k;
     const auto [relative, after] = boost::math::tools::brent_find_minima(at, start - 0.004, start + 0.004, 20);
     out.delta_after += after * after;

@@ -138,14 +138,16 @@ struct torsion_state {
   const auto& slope = record.compliance()[0];
   constexpr double rarer = 200;
   std::vector<std::pair<double, torsion_values>> found;
+  const auto attempt = [&](double speed, double q, double more) {
+    const auto shape = record.force_through(torsion_at_contact(record.take(), {speed, 3.5, q}, torsion_damping::constant_q));
+    double size = 1;
+    const double cost = cauchy_cost(record.relative_m_s(), shape, slope, begin, end, std::abs(record.take().rod_speed_m_s), size);
+    if (size > 0.05) found.push_back({cost + more, {speed, 3.5 / size, q}});
+  };
   for (const double q : {13.0, 35.0})
-    for (double speed = 2.4; speed < 20; speed *= 1.02) {
-      const auto shape = record.force_through(torsion_at_contact(record.take(), {speed, 3.5, q}, torsion_damping::constant_q));
-      double size = 1;
-      const double cost =
-          cauchy_cost(record.relative_m_s(), shape, slope, begin, end, std::abs(record.take().rod_speed_m_s), size);
-      if (size > 0.05) found.push_back({cost + (speed > 4.2 && speed < 11.5 ? 0 : rarer), {speed, 3.5 / size, q}});
-    }
+    for (double speed = 4.2; speed < 11.5; speed *= 1.02) attempt(speed, q, 0);
+  for (const auto& [from, to] : {std::pair{2.4, 4.2}, std::pair{11.5, 20.0}})
+    for (double speed = from; speed < to; speed *= 1.04) attempt(speed, 13, rarer);
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<torsion_values> starts;
   for (const auto& candidate : found) {

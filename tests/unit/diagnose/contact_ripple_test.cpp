@@ -83,4 +83,14 @@ TEST_CASE("ripple: a rod whose speed is not steady") {
   CHECK(h.held_out_gain > 100);
   CHECK(h.parameters[0].value == doctest::Approx(143).epsilon(0.005));
   CHECK(h.parameters[1].value == doctest::Approx(0.02).epsilon(0.05));
+  // once it is known, motion is taken against the rod as it moved
+  rosin::stick_bench steady({a.take(), b.take()}, rosin::include(contact_rigs::declared(), h));
+  const auto left = [](const rosin::stick_bench& of) {
+    double sum = 0;
+    const auto& at = of.declared().rows[0].sample;
+    for (const std::size_t i : at) sum += std::pow(of.relative_m_s()[0][i], 2);
+    return std::sqrt(sum / static_cast<double>(at.size()));
+  };
+  CHECK(left(bench) > 0.7 * 0.02 / std::numbers::sqrt2 * a.speed);
+  CHECK(left(steady) < 0.3 * left(bench));
 }
