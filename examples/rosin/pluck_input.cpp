@@ -66,7 +66,7 @@ rosin::pluck_guess guess_of(const rosin::rig& rig, const rosin::rig_values& valu
   if (values.bending_stiffness_Nm2 && values.tension_N && values.length_m)
     guess.inharmonicity =
         std::pow(std::numbers::pi / values.length_m->value, 2) * values.bending_stiffness_Nm2->value / values.tension_N->value;
-  if (values.position) guess.position_tolerance = 2 * values.position->sd;
+  guess.position_tolerance = rig.position_tolerance.value_or(rosin::detail::default_position_tolerance);
   return guess;
 }
 

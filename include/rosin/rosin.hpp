@@ -212,6 +212,7 @@
 #include <rosin/diagnose/scene_lines.hpp>
 #include <rosin/diagnose/scene_plucks.hpp>
 #include <rosin/diagnose/sensor_chain.hpp>
+#include <rosin/diagnose/stick_columns.hpp>
 #include <rosin/diagnose/stick_design.hpp>
 #include <rosin/diagnose/stretching_pluck.hpp>
 #include <rosin/diagnose/string_poles.hpp>

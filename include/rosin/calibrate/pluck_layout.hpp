@@ -41,7 +41,7 @@ struct pluck_guess {
   double quality = 1000;
   std::array<double, 2> gain_tolerance{0.05, 0.05};  ///< relative limits
   std::array<double, 2> ac_coupled_Hz{0, 0};         ///< 0: DC coupled
-  double position_tolerance = 0.005;                 ///< of declared places, a limit, in lengths
+  double position_tolerance = 0.005;                 ///< how far, in lengths, a predicted pluck may be from where it is declared
   /// terminations that are known to move; fit_plucks() takes them for rigid, fit_ends() and a diagnosis do not
   std::array<modal_termination, 2> ends{};
 

@@ -83,11 +83,16 @@ struct tone_band {
   double highest_Hz = 900;
   double pitch_Hz = 0;  ///< of a string that repeats itself; 0: nothing does
 
-  /// Near a multiple of the pitch, or where friction flattens it to: the string's own doing. `blur_Hz`: how near, at least.
+  /// Near a multiple of the pitch, or where friction flattens it to: the string's own doing. `blur_Hz`: how near, at least. From
+  /// the 14th multiple on these stretches meet.
   [[nodiscard]] bool is_its_own(double f, double blur_Hz = 0) const noexcept {
     if (!(pitch_Hz > 0)) return false;
-    const double n = std::max(1.0, std::round(f / pitch_Hz)), own = n * pitch_Hz, flat = n > 1 ? 0.05 : 0.25;
-    return f > own - std::max(flat * own, blur_Hz) && f < own + std::max(0.02 * own, blur_Hz);
+    const auto near = [&](double n) {
+      const double own = n * pitch_Hz, flat = n > 1 ? 0.05 : 0.25;
+      return f > own - std::max(flat * own, blur_Hz) && f < own + std::max(0.02 * own, blur_Hz);
+    };
+    const double below = std::floor(f / pitch_Hz);
+    return near(std::max(1.0, below)) || near(below + 1);
   }
 };
 
@@ -120,21 +125,25 @@ namespace detail {
 
 }  // namespace detail
 
-/// The tone that explains most, of those that fit twice into the record.
+/// The tone that explains most, of those that fit twice into the record; of frequency 0 where none is looked for, or explains
+/// anything.
 [[nodiscard]] inline tone_fit find_tone(const std::vector<tone_rows>& takes, const tone_band& band = {}) {
   const double length = detail::longest_s(takes);
   std::vector<tone_rows> coarse;
   for (const auto& t : takes) coarse.push_back(detail::gathered(t, 0.1 / band.highest_Hz));
   tone_fit best;
   if (!(length > 0)) return best;
-  const double step = 0.25 / length;
-  for (double f = 2 / length; f < band.highest_Hz; f += step)
-    if (const double e = band.is_its_own(f, 3 / length) ? 0.0 : detail::explained_at(coarse, f); e > best.explained)
-      best.explained = e, best.frequency_Hz = f;
+  const double step = 0.25 / length, lowest_Hz = 2 / length;
+  const auto allowed = [&](double f) { return f >= lowest_Hz && f < band.highest_Hz && !band.is_its_own(f, 3 / length); };
+  const auto attempt = [&](const std::vector<tone_rows>& rows, double f) {
+    if (!allowed(f)) return;
+    if (const double e = detail::explained_at(rows, f); e > best.explained) best.explained = e, best.frequency_Hz = f;
+  };
+  for (double f = lowest_Hz; f < band.highest_Hz; f += step) attempt(coarse, f);
+  if (!(best.explained > 0)) return best;
   best.explained = detail::explained_at(takes, best.frequency_Hz);
   for (double width = step / 2; width > step / 500; width /= 2)
-    for (const double f : {best.frequency_Hz - width, best.frequency_Hz + width})
-      if (const double e = detail::explained_at(takes, f); e > best.explained) best.explained = e, best.frequency_Hz = f;
+    for (const double f : {best.frequency_Hz - width, best.frequency_Hz + width}) attempt(takes, f);
   double weights = 0, sum = 0;
   for (const auto& t : takes) {
     const auto s = detail::sums_at(t, best.frequency_Hz, 0, t.sample.size());
@@ -222,10 +231,9 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
                      detail::student_row_factors(s.residual[t], s.scale), rows.sample, bench.records()[t].take().rate_Hz});
   }
   auto tone = find_tone(takes, {highest_ripple_Hz, lowest_pitch_Hz(bench.records())});
+  if (!(tone.frequency_Hz > 0)) return detail::nothing(bench, h);
   stick_design d = bench.declared();
-  for (std::size_t t = 0; t < takes.size(); ++t)
-    for (const double turn : {0.0, 0.5 * std::numbers::pi})
-      d.add_own(t, detail::rod_wave(bench.records()[t], tone.frequency_Hz, turn));
+  bench.add_rod_tone(d, tone.frequency_Hz);
   const auto fit = fit_design(d, bench.floor_m_s());
   detail::finish_tone(takes, s.scale, fit.share, tone, h);
   const double predicted = h.held_out_gain;

@@ -128,7 +128,8 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
 /// Slips may come once a period, so that a faster ripple looks like a slower one: it has to be likelier, by `rarer` nats.
 [[nodiscard]] inline tone_fit likely_tone(const std::vector<tone_rows>& takes, double pitch_Hz, double scale, double share) {
   constexpr double rarer = 10, highest_ripple_Hz = 900;
-  const tone_fit slow = find_tone(takes, {0.75 * pitch_Hz}), any = find_tone(takes, {highest_ripple_Hz, pitch_Hz});
+  const tone_fit slow = find_tone(takes, {std::min(0.75 * pitch_Hz, highest_ripple_Hz)}),
+                 any = find_tone(takes, {highest_ripple_Hz, pitch_Hz});
   const tone_power all(takes);
   const double likelier =
       0.5 * share * all.rows * std::log(all.without(slow.explained, scale) / all.without(any.explained, scale));
@@ -146,6 +147,10 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
     takes.push_back({s.residual[t], bench.predicted(t), detail::student_row_factors(s.residual[t], s.scale),
                      bench.declared().design.rows[t].sample, bench.records()[t].rate_Hz});
   auto tone = detail::likely_tone(takes, bench.pitch_Hz(), s.scale, bench.declared().fit.share);
+  if (!(tone.frequency_Hz > 0)) {
+    h.decided = false, h.share = bench.declared().fit.share, h.fluctuation = bench.declared().residual();
+    return h;
+  }
   stick_design d = bench.declared().design;
   bench.add_tone(d, tone.frequency_Hz);
   const auto fit = fit_design(d, bench.floor());

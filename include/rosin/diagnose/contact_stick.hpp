@@ -9,42 +9,10 @@
 #pragma once
 
 #include <rosin/diagnose/contact_take.hpp>
+#include <rosin/diagnose/stick_columns.hpp>
 #include <rosin/diagnose/stick_design.hpp>
 
 namespace rosin {
-
-/// What bristles of a micrometre a newton bend by, as a column of the equation: a spring with a delay of its own.
-[[nodiscard]] inline std::complex<double> bristle_bending(double f, double delay_s) {
-  const std::complex<double> s(0, 2 * std::numbers::pi * f);
-  return -1e-6 * s / (1.0 + s * delay_s);
-}
-
-namespace detail {
-
-/// What the sensors' noise is in a row of columns F_1, F_2 (asked by frequency), rms, through a window.
-template <class Row>
-[[nodiscard]] double noise_of_ends(const Row& row, const std::array<double, 2>& noise_N, double rate_Hz,
-                                   const smooth_window& window) {
-  constexpr int steps = 400;
-  double power = 0;
-  for (int k = 0; k < steps; ++k) {
-    const double f = window.edge_Hz * (k + 0.5) / steps;
-    const std::array<std::complex<double>, 2> columns = row(f);
-    for (const std::size_t side : {0U, 1U}) power += std::pow(window(f) * noise_N[side], 2) * std::norm(columns[side]);
-  }
-  return std::sqrt(power * 2 * window.edge_Hz / (rate_Hz * steps));
-}
-
-/// A tone of the rod's speed at all samples of a record.
-[[nodiscard]] inline std::vector<double> rod_wave(const stick_record& record, double frequency_Hz, double phase) {
-  const stick_take& take = record.take();
-  std::vector<double> wave(record.size());
-  for (std::size_t i = 0; i < wave.size(); ++i)
-    wave[i] = take.rod_speed_m_s * std::sin(2 * std::numbers::pi * frequency_Hz * static_cast<double>(i) / take.rate_Hz + phase);
-  return wave;
-}
-
-}  // namespace detail
 
 /// Records, the samples that stick, and the equation as declared.
 class stick_bench {
@@ -94,7 +62,8 @@ public:
     for (const auto& r : records_) sum += std::abs(r.take().rod_speed_m_s);
     return sum / static_cast<double>(std::max<std::size_t>(1, records_.size()));
   }
-  /// Surface velocity less the rod's, as best known (free torsion and compliance), for whoever needs the slips.
+  /// Surface velocity less the rod's, as best known (free torsion and compliance, the model's ripple of the rod), for whoever needs
+  /// the slips.
   [[nodiscard]] const std::vector<std::vector<double>>& relative_m_s() const noexcept { return relative_; }
 
   /// The equation for another torsion; without one, for a string that does not turn. `loose`: parameters free, not declared.
@@ -116,6 +85,12 @@ public:
       d.add_bound(loose ? -1.0 : -2 * model_.torsion_tolerance[k], loose ? 1.0 : 2 * model_.torsion_tolerance[k]);
     include_found(d);
     return d;
+  }
+
+  /// Each take's own tone of the rod's speed: two more columns of its own.
+  void add_rod_tone(stick_design& d, double frequency_Hz) const {
+    for (std::size_t t = 0; t < records_.size(); ++t)
+      for (const double turn : quarter_turns) d.add_own(t, rod_wave(records_[t], frequency_Hz, turn));
   }
 
   /// How a take's surface moves over bristles that flow as well as bend, at the samples that count. `bends`: their column in the
@@ -173,10 +148,10 @@ private:
     Eigen::Vector3d up = at.logs(), down = up;
     const double step = k == 0 ? 2e-4 : 2e-3;
     up[k] += step, down[k] -= step;
-    auto column = record.force_through(torsion_at_contact(record.take(), torsion_values::from_logs(up), damping));
-    detail::add_to(column, record.force_through(torsion_at_contact(record.take(), torsion_values::from_logs(down), damping)), -1);
-    for (double& v : column) v /= 2 * step;
-    return column;
+    const auto with = [&](const Eigen::Vector3d& logs) {
+      return torsion_at_contact(record.take(), torsion_values::from_logs(logs), damping);
+    };
+    return record.force_through(transfer_slope<torsion_at_contact>{with(up), with(down), 1 / (2 * step)});
   }
 
   void mark() {
@@ -216,11 +191,9 @@ private:
 
   void include_found(stick_design& d) {
     if (model_.rod) {
-      const double f0 = (*model_.rod)[0], q = (*model_.rod)[1], mass = (*model_.rod)[2];
+      const auto [frequency_Hz, q, mass_kg] = *model_.rod;
       for (std::size_t t = 0; t < records_.size(); ++t)
-        d.add_shared(t, records_[t].force_through([=](double f) {
-          return -std::complex<double>(0, f / (2 * std::numbers::pi * mass)) / std::complex<double>(f0 * f0 - f * f, f * f0 / q);
-        }));
+        d.add_shared(t, records_[t].force_through(rod_mobility{frequency_Hz, q, mass_kg}));
       d.add_bound(0, 1e9);
     }
     if (model_.bristle_stiffness_N_m) {
@@ -230,9 +203,7 @@ private:
                                 1e6 / *model_.bristle_stiffness_N_m));
       d.add_bound(0, 1e9);
     }
-    if (model_.speed_ripple_Hz)
-      for (std::size_t t = 0; t < records_.size(); ++t)
-        for (const double turn : quarter_turns) d.add_own(t, detail::rod_wave(records_[t], *model_.speed_ripple_Hz, turn));
+    if (model_.speed_ripple_Hz) add_rod_tone(d, *model_.speed_ripple_Hz);
   }
 
   /// The ripple that was found is the rod's, while the string slips as well.
@@ -240,7 +211,7 @@ private:
     for (std::size_t t = 0; t < records_.size(); ++t) {
       const Eigen::VectorXd& own = fit_.solution.own[t];
       for (std::size_t k = 0; k < 2; ++k)
-        detail::add_to(relative_[t], detail::rod_wave(records_[t], *model_.speed_ripple_Hz, quarter_turns[k]),
+        detail::add_to(relative_[t], rod_wave(records_[t], *model_.speed_ripple_Hz, quarter_turns[k]),
                        -own[own.size() - 2 + static_cast<Eigen::Index>(k)]);
     }
   }
@@ -262,6 +233,15 @@ private:
 };
 
 namespace detail {
+
+/// The hypothesis found nothing: it is the model as declared.
+[[nodiscard]] inline contact_hypothesis nothing(const stick_bench& bench, contact_hypothesis h) {
+  h.decided = false;
+  h.share = bench.fit().share;
+  h.fluctuation = bench.fit().solution.scale / bench.speed_m_s();
+  h.statistic = "stick-fluctuation";
+  return h;
+}
 
 /// `origin`: where in the take the samples count from; `unit`: what the residual is shown in.
 [[nodiscard]] inline contact_trace trace_of(const std::vector<std::size_t>& samples, const Eigen::VectorXd& residual,

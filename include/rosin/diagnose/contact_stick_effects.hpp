@@ -16,8 +16,6 @@
 
 #include <rosin/diagnose/contact_stick.hpp>
 
-#include <functional>
-
 namespace rosin {
 
 namespace detail {
@@ -85,39 +83,28 @@ inline void settle_hypothesis(stick_bench& bench, const design_fit& fit, contact
   h.statistic = "stick-fluctuation";
 }
 
-/// The hypothesis found nothing: it is the model as declared.
-[[nodiscard]] inline contact_hypothesis nothing(const stick_bench& bench, contact_hypothesis h) {
-  h.decided = false;
-  h.share = bench.fit().share;
-  h.fluctuation = bench.fit().solution.scale / bench.speed_m_s();
-  h.statistic = "stick-fluctuation";
-  return h;
-}
-
-/// A transfer function with parameters in logarithms, and its size: column = size * transfer(theta).
-using transfer_family = std::function<std::complex<double>(const Eigen::VectorXd&, double)>;
-
-struct family_fit {
+struct rod_fit {
   Eigen::VectorXd theta;
   double size = 0;
   design_fit fit{};
   Eigen::MatrixXd covariance;  ///< of size, then of theta
 };
 
-/// Gauss-Newton on a family of transfer functions added to the declared equation; theta stays between `low` and `high`.
-[[nodiscard]] inline family_fit fit_family(stick_bench& bench, const transfer_family& family, Eigen::VectorXd theta, double size,
-                                           const Eigen::VectorXd& low, const Eigen::VectorXd& high, int steps) {
-  family_fit out{.theta = theta, .size = size, .covariance = {}};
+/// Gauss-Newton on rods of unit mass added to the declared equation; theta = ln(frequency), ln(q) stays between `low` and `high`.
+[[nodiscard]] inline rod_fit fit_rod(stick_bench& bench, Eigen::VectorXd theta, double size, const Eigen::VectorXd& low,
+                                     const Eigen::VectorXd& high, int steps) {
+  const auto rod = [](const Eigen::VectorXd& at) { return rod_mobility{std::exp(at[0]), std::exp(at[1])}; };
+  rod_fit out{.theta = theta, .size = size, .covariance = {}};
   Eigen::VectorXd reach = Eigen::VectorXd::Constant(theta.size(), 0.3), last = Eigen::VectorXd::Zero(theta.size());
   for (int step = 0; step <= steps; ++step) {
     stick_design d = bench.declared();
     for (std::size_t t = 0; t < d.rows.size(); ++t) {
       auto& record = bench.records()[t];
-      d.add_shared(t, record.force_through([&](double f) { return family(out.theta, f); }));
+      d.add_shared(t, record.force_through(rod(out.theta)));
       for (Eigen::Index k = 0; k < theta.size(); ++k) {
         Eigen::VectorXd up = out.theta, down = out.theta;
         up[k] += 2e-3, down[k] -= 2e-3;
-        d.add_shared(t, record.force_through([&](double f) { return out.size / 4e-3 * (family(up, f) - family(down, f)); }));
+        d.add_shared(t, record.force_through(transfer_slope<rod_mobility>{rod(up), rod(down), out.size / 4e-3}));
       }
     }
     d.add_bound(0, 1e30);
@@ -139,13 +126,7 @@ struct family_fit {
   return out;
 }
 
-/// The mobility of a resonator of unit mass at theta = ln(frequency), ln(q), with the sign it has in the equation.
-[[nodiscard]] inline std::complex<double> rod_mobility(const Eigen::VectorXd& theta, double f) {
-  const double f0 = std::exp(theta[0]), q = std::exp(theta[1]);
-  return -std::complex<double>(0, f / (2 * std::numbers::pi)) / std::complex<double>(f0 * f0 - f * f, f * f0 / q);
-}
-
-/// The same as a recursion on a force's samples, for some q at a time: quick, exact enough for a grid. [q][sample]
+/// A rod of unit mass as a recursion on a force's samples, for some q at a time: quick, exact enough for a grid. [q][sample]
 template <std::size_t N>
 [[nodiscard]] std::array<std::vector<double>, N> ring(const std::vector<double>& force, double f0, const std::array<double, N>& q,
                                                       double rate) {
@@ -212,9 +193,8 @@ template <std::size_t N>
     }
   if (!(best > 0)) return detail::nothing(bench, h);
   const Eigen::Vector2d start(std::log(f_best), std::log(q_best));
-  const auto found =
-      detail::fit_family(bench, detail::rod_mobility, start, 1 / 5e-3, Eigen::Vector2d(std::log(lowest_Hz), std::log(lowest_q)),
-                         Eigen::Vector2d(std::log(highest_Hz), std::log(highest_q)), 5);
+  const auto found = detail::fit_rod(bench, start, 1 / 5e-3, Eigen::Vector2d(std::log(lowest_Hz), std::log(lowest_q)),
+                                     Eigen::Vector2d(std::log(highest_Hz), std::log(highest_q)), 5);
   detail::settle_hypothesis(bench, found.fit, h);
   const double f0 = std::exp(found.theta[0]), q = std::exp(found.theta[1]), mass = found.size > 0 ? 1 / found.size : 1e9;
   const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();

@@ -176,9 +176,11 @@ inline std::optional<odd_pluck> against(pluck_diagnosis others, const pluck_take
 }
 
 /// Plucks at places of their own never contradict each other, as every place is free: of three or more the one that is farther
-/// from where it is declared than a notebook could be, if the others are not.
-inline std::optional<std::size_t> misplaced(const std::vector<pluck_take>& takes, const outcome<pluck_fit_result>& fit) {
-  constexpr double most_off = 0.02, alike = 0.01;
+/// from where it is declared than a notebook could be, if the others are not: by four times the tolerance, 0.02 at least.
+inline std::optional<std::size_t> misplaced(const std::vector<pluck_take>& takes, const outcome<pluck_fit_result>& fit,
+                                            double position_tolerance) {
+  constexpr double alike = 0.01;
+  const double most_off = std::max(0.02, 4 * position_tolerance);
   if (!fit || fit->horizon_periods < 1e8 || fit->layout.positions().size() < takes.size()) return std::nullopt;
   const auto off = [&](std::size_t t) { return fit->value[fit->layout.position(t)] - takes[t].position; };
   for (std::size_t i = 0; i < takes.size(); ++i) {
@@ -209,7 +211,7 @@ inline double worst_of(const outcome<pluck_fit_result>& fit) { return fit && fit
   };
   const auto fit_of = [&](const std::vector<pluck_take>& some) { return detail::fit_declared(some, guess, options); };
   const auto together = fit_of(all);
-  const auto elsewhere = detail::misplaced(all, together);
+  const auto elsewhere = detail::misplaced(all, together, guess.position_tolerance);
   std::size_t which = elsewhere.value_or(0);
   double least = 1;
   for (std::size_t i = 0; i < all.size() && !elsewhere; ++i)

@@ -31,10 +31,31 @@ struct stick_take {
   [[nodiscard]] smooth_window window() const noexcept { return {edge_Hz > 0 ? edge_Hz : 0.45 * rate_Hz}; }
 };
 
+/// How a transfer function that rings changes: `per` times the difference of two. Through the same room, what that cuts off
+/// cancels.
+template <class Transfer>
+struct transfer_slope {
+  Transfer up, down;
+  double per = 1;
+
+  [[nodiscard]] std::complex<double> operator()(double f) const noexcept { return per * (up(f) - down(f)); }
+  [[nodiscard]] double memory_s() const noexcept { return std::max(up.memory_s(), down.memory_s()); }
+  [[nodiscard]] std::vector<std::complex<double>> on_grid(double step_Hz, std::size_t count) const requires requires {
+    up.on_grid(step_Hz, count);
+  }
+  {
+    auto out = up.on_grid(step_Hz, count);
+    const auto less = down.on_grid(step_Hz, count);
+    for (std::size_t k = 0; k < count; ++k) out[k] = per * (out[k] - less[k]);
+    return out;
+  }
+};
+
 /// A take with its force transformed and its velocity smoothed and taken against the rod.
 class stick_record {
 public:
-  explicit stick_record(const stick_take& take) : take_{take}, begin_{first(take)}, force_{known(take.force_N), take.rate_Hz} {
+  explicit stick_record(const stick_take& take)
+      : take_{take}, begin_{first(take)}, force_{known(take.force_N), take.rate_Hz, usual_memory_s} {
     contact_signal<> velocity{known(take.velocity_m_s), take.rate_Hz};
     relative_ = velocity.through(window(), [](double) { return 1.0; });
     for (double& v : relative_) v -= take.rod_speed_m_s;
@@ -54,9 +75,19 @@ public:
 
   /// The centre's velocity less the rod's, smoothed.
   [[nodiscard]] const std::vector<double>& relative_m_s() const noexcept { return relative_; }
-  /// The force through a transfer function, smoothed.
+  /// The force through a transfer function, smoothed. One that says how long it rings (memory_s, to a thousandth) finds so much
+  /// room behind the record, four seconds at most: else its end would ring on at its beginning.
   template <class Transfer>
   [[nodiscard]] std::vector<double> force_through(const Transfer& transfer) {
+    if constexpr (requires { transfer.memory_s(); }) {
+      constexpr double longest_s = 4;
+      const double needed_s = std::min(longest_s, transfer.memory_s());
+      if (needed_s > 2 * usual_memory_s) {
+        if (!roomy_ || needed_s > room_s_)
+          room_s_ = std::min(longest_s, 1.5 * needed_s), roomy_.emplace(known(take_.force_N), take_.rate_Hz, room_s_ / 2);
+        return roomy_->through(window(), transfer);
+      }
+    }
     return force_.through(window(), transfer);
   }
   /// The force, smoothed. Kept once made.
@@ -79,6 +110,8 @@ public:
   }
 
 private:
+  static constexpr double usual_memory_s = 0.03;  ///< half of what is kept free behind the record
+
   [[nodiscard]] static bool is_known(const stick_take& t, std::size_t i) {
     return std::isfinite(t.force_N[i]) && std::isfinite(t.velocity_m_s[i]);
   }
@@ -96,6 +129,8 @@ private:
   stick_take take_;
   std::size_t begin_;
   contact_signal<> force_;
+  std::optional<contact_signal<>> roomy_{};
+  double room_s_ = 0;
   std::vector<double> relative_, smooth_;
   std::vector<std::vector<double>> compliance_;
 };

@@ -52,6 +52,8 @@ struct torsion_at_contact {
     if (damping == torsion_damping::constant_q) return guide(f);
     return modes(f) + std::complex<double>(0, 2 * std::numbers::pi * f * rest_m_N);
   }
+  /// How long it rings, to a thousandth.
+  [[nodiscard]] double memory_s() const noexcept { return guide.memory_s(1e-3); }
   [[nodiscard]] std::vector<std::complex<double>> on_grid(double step_Hz, std::size_t count) const {
     if (damping == torsion_damping::constant_q) return guide.on_grid(step_Hz, count);
     auto out = modes.on_grid(step_Hz, count);
@@ -165,20 +167,19 @@ inline void torsion_step(std::vector<stick_record>& records, torsion_state& stat
   std::vector<stick_rows> rows;
   const Eigen::Vector3d here = state.at.logs();
   for (auto& record : records) {
-    auto base = record.force_through(torsion_at_contact(record.take(), state.at, state.damping));
+    const torsion_at_contact now(record.take(), state.at, state.damping);
+    auto base = record.force_through(now);
     std::vector<std::vector<double>> shared = record.compliance();
     for (int k = 0; move && k < 3; ++k) {
       Eigen::Vector3d aside = here;
       aside[k] += k == 0 ? 1e-4 : 1e-3;
-      auto other = record.force_through(torsion_at_contact(record.take(), torsion_values::from_logs(aside), state.damping));
-      add_to(other, base, -1);
-      for (double& v : other) v /= aside[k] - here[k];
-      shared.push_back(std::move(other));
+      const torsion_at_contact up(record.take(), torsion_values::from_logs(aside), state.damping);
+      shared.push_back(record.force_through(transfer_slope<torsion_at_contact>{up, now, 1 / (aside[k] - here[k])}));
     }
     add_to(base, record.relative_m_s());
-    auto now = base;
-    for (Eigen::Index k = 0; k < 2; ++k) add_to(now, shared[static_cast<std::size_t>(k)], state.rest[k]);
-    const auto marked = sticking_samples(record, now, {.most = most});
+    auto surface = base;
+    for (Eigen::Index k = 0; k < 2; ++k) add_to(surface, shared[static_cast<std::size_t>(k)], state.rest[k]);
+    const auto marked = sticking_samples(record, surface, {.most = most});
     for (auto& column : shared)
       for (double& v : column) v = -v;
     rows.push_back(pick(marked, base, shared, {std::vector<double>(base.size(), 1.0)}));

@@ -27,9 +27,9 @@ struct torsion_modes {
   double q = 15;
   int modes = 60;
 
-  /// How many to sum for what is seen below a frequency: those above 1.25 of it are a compliance there. 40 at least, 400 at most.
+  /// How many to sum for what is seen below a frequency: those above 1.25 of it are a compliance there. 40 at least, 1000 at most.
   [[nodiscard]] static int seen_below(double frequency_Hz, double one_way_s) noexcept {
-    return static_cast<int>(std::clamp(std::ceil(2.5 * frequency_Hz * one_way_s), 40.0, 400.0));
+    return static_cast<int>(std::clamp(std::ceil(2.5 * frequency_Hz * one_way_s), 40.0, 1000.0));
   }
 
   /// Surface velocity for 1 N at a frequency in Hz, m/s per N.

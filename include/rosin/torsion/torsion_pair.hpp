@@ -26,7 +26,7 @@ public:
   };
 
   /// `delay_s`: torsional, from a to the near end, between both, from b to the far end. `modes`: viscous ones to sum.
-  torsion_pair(const std::array<double, 3>& delay_s, double impedance_Ns_m, double q, torsion_damping damping, int modes = 40)
+  torsion_pair(const std::array<double, 3>& delay_s, double impedance_Ns_m, double q, torsion_damping damping, int modes)
       : a_{delay_s[0]}, b_{delay_s[0] + delay_s[1]}, all_{delay_s[0] + delay_s[1] + delay_s[2]},
         impedance_{impedance_Ns_m}, q_{q}, damping_{damping} {
     if (damping == torsion_damping::constant_q) return;

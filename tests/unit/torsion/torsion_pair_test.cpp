@@ -16,7 +16,7 @@ bool alike(std::complex<double> a, std::complex<double> b, double relative) { re
 
 TEST_CASE("torsion pair: both places at one are the torsion of a single contact") {
   for (const auto damping : {rosin::torsion_damping::constant_q, rosin::torsion_damping::viscous_modes}) {
-    const rosin::torsion_pair pair({pair_delay[0], 0, pair_delay[2]}, pair_impedance, pair_q, damping);
+    const rosin::torsion_pair pair({pair_delay[0], 0, pair_delay[2]}, pair_impedance, pair_q, damping, 40);
     const rosin::torsion_waveguide guide{{pair_delay[0], pair_delay[2]}, pair_impedance, pair_q};
     const rosin::torsion_modes modes{guide.delay_s, pair_impedance, pair_q, 40};
     for (const double f : {300.0, 2e3, 6.1e3, 2e4}) {
@@ -32,7 +32,7 @@ TEST_CASE("torsion pair: both places at one are the torsion of a single contact"
 }
 
 TEST_CASE("torsion pair: forces and rotations between the two places obey the wave equation") {
-  const rosin::torsion_pair pair(pair_delay, pair_impedance, pair_q, rosin::torsion_damping::constant_q);
+  const rosin::torsion_pair pair(pair_delay, pair_impedance, pair_q, rosin::torsion_damping::constant_q, 0);
   for (const double f : {500.0, 4e3, 1.5e4}) {
     const double w = 6.283185307179586 * f;
     const std::complex<double> g(0.5 * w / pair_q, w);
@@ -48,8 +48,8 @@ TEST_CASE("torsion pair: forces and rotations between the two places obey the wa
 }
 
 TEST_CASE("torsion pair: viscous modes and a constant Q agree where the Q does not matter") {
-  const rosin::torsion_pair waves(pair_delay, pair_impedance, 4000, rosin::torsion_damping::constant_q),
-      modes(pair_delay, pair_impedance, 4000, rosin::torsion_damping::viscous_modes);
+  const rosin::torsion_pair waves(pair_delay, pair_impedance, 4000, rosin::torsion_damping::constant_q, 0),
+      modes(pair_delay, pair_impedance, 4000, rosin::torsion_damping::viscous_modes, 40);
   for (const double f : {200.0, 1.3e3, 9e3}) {
     const auto a = waves(f), b = modes(f);
     CHECK(alike(b.aa, a.aa, 2e-3));
