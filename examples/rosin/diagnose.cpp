@@ -32,16 +32,25 @@ void print_text(const rig_diagnosis& d) {
       std::cout << "  " << p.name << " = " << in_digits(p.value, "%.6g") << " +- " << in_digits(p.sd, "%.2g") << '\n';
     for (const auto& other : m.indistinguishable_from) std::cout << "  cannot be told from " << other << '\n';
   }
+  if (!d.kind.empty()) std::cout << kind_in_words(d.kind) << '\n';
+  if (d.time_s) {
+    std::cout << "largest in " << d.take << (d.channel.empty() ? "" : ", channel " + d.channel) << ", "
+              << in_digits(1e3 * (*d.time_s)[0], "%.2f") << " to " << in_digits(1e3 * (*d.time_s)[1], "%.2f") << " ms";
+    if (d.echo) std::cout << (*d.echo == 0 ? ", before any wave" : ", behind wave " + std::to_string(*d.echo));
+    if (d.band_Hz)
+      std::cout << ", " << in_digits((*d.band_Hz)[0], "%.0f") << " to " << in_digits((*d.band_Hz)[1], "%.0f") << " Hz";
+    std::cout << '\n';
+  }
   std::cout << d.metric << ": " << in_digits(d.before, "%.4g") << " before";
   if (d.after) std::cout << ", " << in_digits(*d.after, "%.4g") << " after";
   std::cout << ", " << in_digits(d.noise_floor, "%.4g") << " from noise alone\n";
   std::size_t shown = 0;
   for (const auto& r : d.ranking) {
-    if (++shown > 6) break;
+    if (++shown > 6 && !r.left) continue;
     std::string names;
     for (const auto& e : r.effects) names += (names.empty() ? "" : " + ") + e;
     std::cout << "  " << (names.empty() ? "as declared" : names) << ": log10 of the evidence "
-              << in_digits(r.log10_evidence, "%.4g") << '\n';
+              << in_digits(r.log10_evidence, "%.4g") << (r.left ? ", leaves " + in_digits(*r.left, "%.4g") : "") << '\n';
   }
   for (const auto& line : d.assumed) std::cout << "assumed: " << line << '\n';
 }

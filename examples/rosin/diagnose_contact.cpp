@@ -5,6 +5,8 @@
 //
 #include "diagnose_parts.hpp"
 
+#include <rosin/diagnose/contact_cycle.hpp>
+
 #include <map>
 
 namespace tool {
@@ -103,7 +105,7 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
     for (auto& r : d.ranking) r.log10_evidence -= gained / std::log(10.0);
     for (const auto& h : found.hypotheses) {
       const double nats = h.evidence(found.independent) - gained;
-      d.ranking.push_back({{h.effect}, (nothing ? std::min(-0.5, nats) : nats) / std::log(10.0)});
+      d.ranking.push_back({{h.effect}, (nothing ? std::min(-0.5, nats) : nats) / std::log(10.0), {}});
     }
   }
   if (nothing) return false;
@@ -202,6 +204,8 @@ void add_after(const std::vector<rosin::contact_trace>& after, contact_picture& 
 /// Finishes the picture; `alone`: nothing else is wrong with the rig, so that this is where it shows.
 void show(rig_diagnosis& d, double noise, bool alone) {
   d.contact->noise = noise;
+  if (!d.contact->before.empty()) d.contact->cycle_before = rosin::left_by_part(d.contact->before.front());
+  if (!d.contact->after.empty()) d.contact->cycle_after = rosin::left_by_part(d.contact->after.front());
   if (alone && !d.contact->before.empty()) d.take = d.contact->take, d.time_s = d.contact->shown_s;
 }
 

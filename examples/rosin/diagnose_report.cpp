@@ -173,9 +173,105 @@ figure contact_figure(const contact_picture& p) {
   return f;
 }
 
+/// What is left in each tenth of a stick, or of a slip.
+figure cycle_figure(const contact_picture& p, double noise) {
+  const bool sticks = p.statistic == "stick-fluctuation";
+  panel one{"",
+            sticks ? "part of the stick: 0 begun, 1 about to slip" : "part of the slip: 0 begun, 1 about to stick",
+            sticks ? "of the rod's speed" : "friction",
+            {},
+            {},
+            std::pair{0.0, 1.0},
+            {},
+            230};
+  double most = 2 * noise;
+  const auto add = [&](const char* name, const std::vector<double>& left, const char* colour) {
+    curve c{name, {}, {}, colour, 1.6};
+    for (std::size_t k = 0; k < left.size(); ++k)
+      for (const std::size_t edge : {k, k + 1}) {
+        c.x.push_back(static_cast<double>(edge) / static_cast<double>(left.size())), c.y.push_back(left[k]);
+        most = std::max(most, left[k]);
+      }
+    if (!left.empty()) one.curves.push_back(c);
+  };
+  add("as declared", p.cycle_before, colour::near);
+  add("corrected", p.cycle_after, colour::far);
+  one.curves.push_back({"noise", {0, 1}, {noise, noise}, colour::model, 1, 2});
+  one.y_range = std::pair{0.0, 1.15 * most};
+  return {std::string{"Which part of the cycle it stands in: rms of what is left in each tenth of "} +
+              (sticks ? "a stick" : "a slip") + ", over all of " + p.take + ".",
+          {one}};
+}
+
+/// The map's first echoes, octave by octave.
+figure map_figure(const residual_picture& r) {
+  constexpr int most_echoes = 16;
+  figure f;
+  const auto& edges = r.map->band_Hz;
+  for (std::size_t c = 0; c < 2; ++c) {
+    panel p{
+        std::string(c == 0 ? "(a) " : "(b) ") + end_name(c), "time in " + r.take + " / ms", "band / kHz", {}, {}, {}, {}, 230};
+    const auto& m = r.map->channels[c];
+    for (std::size_t row = 0; row < m.echo.size() && m.echo[row] <= most_echoes; ++row)
+      for (std::size_t b = 0; b + 1 < edges.size(); ++b)
+        p.cells.push_back({1e3 * m.time_s[row], 1e3 * m.time_s[row + 1], static_cast<double>(b), static_cast<double>(b + 1),
+                           m.over_noise(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(b))});
+    for (std::size_t b = 0; b < edges.size(); ++b)
+      p.y_marks.emplace_back(static_cast<double>(b), in_digits(1e-3 * edges[b], "%.2g"));
+    if (p.cells.empty()) return {};
+    p.x_range = std::pair{p.cells.front().from_x, p.cells.back().to_x};
+    p.y_range = std::pair{0.0, static_cast<double>(edges.size() - 1)};
+    f.panels.push_back(p);
+  }
+  f.share_axis();
+  f.caption =
+      "What the declared model leaves of " + r.take +
+      ", from each arrival of a wave at that end to the next (the first: the direct wave) and octave by octave: rms over that of "
+      "the noise.";
+  return f;
+}
+
+/// The pluck as a force at its place, by both ends.
+figure force_figure(const residual_picture& r) {
+  const pluck_force_picture& force = *r.force;
+  const double release_s = r.echoes[0].release_s, from = 1e3 * (release_s - 0.4 / r.fundamental_Hz),
+               to = 1e3 * (release_s + 1.5 / r.fundamental_Hz);
+  panel both{"(a) both versions", "", "force / N", {}, {}, std::pair{from, to}, {}, 230},
+      apart{"(b) their difference, and their mean less the release",
+            "time in " + r.take + " / ms",
+            "mN",
+            {},
+            {},
+            std::pair{from, to},
+            {},
+            230};
+  curve near{"near", {}, {}, colour::near, 1.6}, far{"far", {}, {}, colour::far, 1.2},
+      step{"release", {}, {}, colour::model, 1, 2}, parting{"near - far", {}, {}, colour::slip, 1.3},
+      shape{"mean - release", {}, {}, colour::mean, 1.3};
+  for (std::size_t i = 0; i < force.near_N.size(); ++i) {
+    const double ms = 1e3 * (force.begin_s + static_cast<double>(i) / r.rate_Hz);
+    if (ms < from || ms > to) continue;
+    for (curve* c : {&near, &far, &step, &parting, &shape}) c->x.push_back(ms);
+    near.y.push_back(force.near_N[i]), far.y.push_back(force.far_N[i]), step.y.push_back(force.step_N[i]);
+    parting.y.push_back(1e3 * (force.near_N[i] - force.far_N[i]));
+    shape.y.push_back(1e3 * (0.5 * (force.near_N[i] + force.far_N[i]) - force.step_N[i]));
+  }
+  both.curves = {near, far, step}, apart.curves = {parting, shape};
+  figure f;
+  f.panels = {both, apart};
+  f.share_axis();
+  f.caption = "The plucking force of " + r.take +
+              " as either end has it by the declared model. Over eight periods the versions part by " +
+              in_digits(1e3 * force.parting_N) + " mN rms (" + in_digits(1e3 * force.parting_noise_N) +
+              " from noise), their mean is off a release by " + in_digits(1e3 * force.shape_N) + " mN (" +
+              in_digits(1e3 * force.shape_noise_N) + ").";
+  return f;
+}
+
 void add_figures(const rig_diagnosis& d, report_page& page) {
   if (d.pickup) page.figures = pickup_figures(d);
   if (d.contact && !d.contact->before.empty()) page.figures.push_back(contact_figure(*d.contact));
+  if (d.contact && !d.contact->cycle_before.empty()) page.figures.push_back(cycle_figure(*d.contact, d.contact->noise));
   if (!d.residual) return;
   const residual_picture& r = *d.residual;
   const bool told = d.time_s && d.take == r.take,
@@ -197,6 +293,8 @@ void add_figures(const rig_diagnosis& d, report_page& page) {
     page.figures.push_back(after);
   }
   page.figures.push_back(spectrum_figure(r, d, corrected));
+  if (r.map && told) page.figures.push_back(map_figure(r));
+  if (r.force && told) page.figures.push_back(force_figure(r));
 }
 
 std::string list_of(const std::vector<std::string>& names, const char* none) {
@@ -217,6 +315,7 @@ std::string with_interval(const diagnosed_value& p) {
 
 void add_fit(const rig_diagnosis& d, report_page& page) {
   page.result.emplace_back("verdict", d.verdict);
+  if (!d.kind.empty()) page.result.emplace_back("kind of mismatch", kind_in_words(d.kind));
   const std::string where = d.metric == "pluck-residual" ? " of " + list_of(d.held_out, "the fitted plucks") : std::string{};
   page.result.emplace_back(d.metric + where + ", as declared", in_digits(100 * d.before) + " %");
   if (d.after) page.result.emplace_back(d.metric + where + ", corrected", in_digits(100 * *d.after) + " %");
@@ -238,13 +337,14 @@ void add_missing(const rig_diagnosis& d, report_page& page) {
 void add_ranking(const rig_diagnosis& d, report_page& page) {
   std::size_t shown = 0;
   for (const auto& r : d.ranking) {
-    if (++shown > 8) break;
+    if (++shown > 8 && !r.left) continue;
     std::string names;
     for (const auto& e : r.effects) names += (names.empty() ? "" : " + ") + e;
     page.result.emplace_back((shown == 1 ? "likeliest: " : "runner-up: ") + (names.empty() ? "as declared" : names),
-                             "log10 of the evidence " + in_digits(r.log10_evidence, "%.4g"));
+                             "log10 of the evidence " + in_digits(r.log10_evidence, "%.4g") +
+                                 (r.left ? ", leaves " + in_digits(100 * *r.left) + " %" : ""));
   }
-  if (d.ranking.size() > shown)
+  if (shown > 8)
     page.notes.push_back(std::to_string(d.ranking.size()) +
                          " models were tried; the likeliest are in the table, all of them in the JSON file.");
   if (!d.pickup)

@@ -4,6 +4,7 @@
 //
 #include "diagnose_rig.hpp"
 
+#include <rosin/diagnose/mismatch_class.hpp>
 #include <rosin/diagnose/rattle_effect.hpp>
 
 namespace tool {
@@ -43,6 +44,25 @@ residual_picture picture_of(const rosin::odd_pluck& odd) {
   return out;
 }
 
+/// Where in time and frequency what the declared model leaves stands out, and whether the force's two versions agree on it.
+void locate(const rosin::pluck_diagnosis& p, residual_picture& out) {
+  const std::size_t take = p.mismatch.take;
+  const auto& layout = p.data.layout;
+  const double release_s = p.base.value[layout.at(take, rosin::pluck_layout::release)],
+               place = p.base.value[layout.position(take)], period_s = 1 / out.fundamental_Hz;
+  out.echoes = {{{release_s, period_s, place}, {release_s, period_s, 1 - place}}};
+  std::array<Eigen::VectorXd, 2> left;
+  for (std::size_t c = 0; c < 2; ++c)
+    left[c] =
+        Eigen::Map<const Eigen::VectorXd>(out.before.force_N[c].data(), static_cast<Eigen::Index>(out.before.force_N[c].size()));
+  out.map = rosin::map_of(left, out.before.begin_s, out.rate_Hz, out.echoes, out.limits, p.best.quality.noise);
+  const auto force = rosin::plucking_force_of(p.data, p.declared, p.base, take, p.best.quality.noise);
+  if (!force) return;
+  out.force = {force->begin_s,   force->near_N,          force->far_N,   force->step_N,
+               force->parting_N, force->parting_noise_N, force->shape_N, force->shape_noise_N};
+  if (const auto kind = force->kind()) out.kind = rosin::name_of(*kind);
+}
+
 }  // namespace
 
 std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& p) {
@@ -54,6 +74,7 @@ std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& p) {
   out.limits = before.limits, out.before = before.series;
   out.after = p.best.effects.empty() ? before.series : left_by(p.data, p.best, p.mismatch.take).series;
   add_noise(p.best, out);
+  if (p.mismatched) locate(p, out);
   return out;
 }
 

@@ -7,6 +7,8 @@
 #include "digits.hpp"
 #include "rig_ends.hpp"
 
+#include <rosin/diagnose/mismatch_class.hpp>
+
 namespace tool {
 
 namespace {
@@ -97,7 +99,7 @@ void add_place(const rosin::acting_place& place, rig_diagnosis& d) {
 
 void take_over(const rosin::pluck_diagnosis& p, const rosin::rig_values& values, rig_diagnosis& d) {
   for (std::size_t i = 0; i < p.best.effects.size(); ++i) d.missing.push_back(described(p, i, values));
-  for (const auto& h : p.ranking) d.ranking.push_back({bare(h.ids), h.log_evidence / std::log(10.0)});
+  for (const auto& h : p.ranking) d.ranking.push_back({bare(h.ids), h.log_evidence / std::log(10.0), h.left});
   d.held_out = p.held_out;
   d.before = p.before, d.noise_floor = p.floor;
   d.residual = residuals_of(p);
@@ -105,6 +107,7 @@ void take_over(const rosin::pluck_diagnosis& p, const rosin::rig_values& values,
   if (!p.mismatched) return;
   d.take = p.data.takes[p.mismatch.take].name, d.channel = p.mismatch.channel == 0 ? "near" : "far";
   d.time_s = p.mismatch.time_s, d.band_Hz = p.mismatch.band_Hz, d.residual_over_noise = p.mismatch.residual_over_noise;
+  if (d.residual) d.kind = d.residual->kind, d.echo = d.residual->echoes[p.mismatch.channel].at((*d.time_s)[0]);
   for (const auto& m : d.missing)
     if (m.position) d.position = m.position;
   if (p.mismatch.place) add_place(*p.mismatch.place, d);
@@ -221,6 +224,9 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   rank(d);
   d.verdict = !p.explained || contact_open || !accounted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";
   if (d.verdict != "no-mismatch" && d.take.empty()) d.take = strokes.empty() ? p.data.takes.front().name : strokes.front().name;
+  if (d.verdict != "no-mismatch" && d.kind.empty() && d.metric != "pluck-residual")
+    d.kind = rosin::name_of(d.metric == "force-consistency" ? rosin::mismatch_class::sensor_or_string
+                                                            : rosin::mismatch_class::contact);
   if (d.verdict != "no-mismatch" && !(d.residual_over_noise > 0))
     d.residual_over_noise = d.noise_floor > 0 ? d.before / d.noise_floor : 0;
   if (d.verdict == "no-mismatch") d.after.reset();

@@ -7,6 +7,7 @@
 #include "rig_input.hpp"
 
 #include <rosin/diagnose/contact_take.hpp>
+#include <rosin/diagnose/mismatch_map.hpp>
 #include <rosin/propagate/band.hpp>
 
 #include <array>
@@ -42,12 +43,20 @@ struct missing_effect {
 struct ranked_model {
   std::vector<std::string> effects;
   double log10_evidence = 0;
+  std::optional<double> left{};  ///< what it leaves of the takes set aside, in the metric of its data; where that was looked at
 };
 
 /// One take's residual in both channels, from so many seconds after its beginning on.
 struct residual_series {
   double begin_s = 0;
   std::array<std::vector<double>, 2> force_N;
+};
+
+/// A pluck's force as both ends have it by the declared model, and the release that it should be.
+struct pluck_force_picture {
+  double begin_s = 0;
+  std::vector<double> near_N, far_N, step_N;
+  double parting_N = 0, parting_noise_N = 0, shape_N = 0, shape_noise_N = 0;  ///< rms: between the versions; their mean, the step
 };
 
 /// What the declared model and the corrected one leave of the pluck in which they part most, over its first periods or where it
@@ -59,6 +68,10 @@ struct residual_picture {
   std::array<double, 2> noise_N{};  ///< standard deviation in that band
   std::array<double, 2> noise_N_per_root_Hz{};
   residual_series before, after;
+  std::optional<rosin::mismatch_map> map{};   ///< of what the declared model leaves
+  std::array<rosin::echo_times, 2> echoes{};  ///< at the near and the far end
+  std::optional<pluck_force_picture> force{};
+  std::string kind{};  ///< whether both versions of the force agree on the mismatch: a name_of(mismatch_class), or empty
   std::string stretch = "over its first periods",
               bar = "The bar marks where it is largest; over the stretch that was fitted it is";  ///< what the captions say
 };
@@ -83,6 +96,7 @@ struct contact_picture {
   std::string take, statistic;                      ///< "stick-fluctuation" or "friction-residual"
   std::vector<rosin::contact_trace> before, after;  ///< one of each; after: none where nothing was found
   std::array<double, 2> shown_s{};                  ///< the stretch where most is left
+  std::vector<double> cycle_before, cycle_after;    ///< rms left in each tenth of a stick, or of a slip, over all of the take
   double noise = 0;
 };
 
@@ -103,6 +117,8 @@ struct rig_diagnosis {
   /// channel"
   std::string acts;
   double residual_over_noise = 0;
+  std::string kind;         ///< "sensor-or-string", "common-mode", "contact"; empty where that cannot be told
+  std::optional<int> echo;  ///< the last wave of the pluck to arrive before time_s; 1: the direct one
   std::optional<residual_picture> residual;
   std::optional<contact_picture> contact;
   std::vector<std::string> assumed, warnings;
@@ -132,6 +148,8 @@ inline constexpr std::size_t diagnosis_steps = 4;
 [[nodiscard]] std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d,
                                                                    const provenance& from);
 [[nodiscard]] std::string sentence(const rig_diagnosis& d);
+/// What a kind of mismatch means.
+[[nodiscard]] std::string kind_in_words(const std::string& kind);
 
 /// What the plucks that a rig file announces can tell apart, whether they have been made or not.
 [[nodiscard]] rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, double noise_N);

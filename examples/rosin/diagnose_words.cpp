@@ -155,6 +155,12 @@ std::string statement_of(const missing_effect& m) {
   return "Missing: " + m.effect + ".";
 }
 
+std::string kind_in_words(const std::string& kind) {
+  if (kind == "sensor-or-string") return "sensor or string: the force's two versions disagree";
+  if (kind == "common-mode") return "common mode: the force's two versions agree, but it is no clean release";
+  return "contact: plucks and both versions of the force are right, the motion under the bow is not as declared";
+}
+
 std::string sentence(const rig_diagnosis& d) {
   if (d.verdict == "no-mismatch") return "Simulation and recordings agree to within the noise.";
   std::string out;

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -67,6 +68,19 @@ void write_data(std::ostream& out, const std::string& name, const curve& c) {
   out << "EOD\n";
 }
 
+/// Cells in shades by the logarithm of their value, with the key beside them; `bottom`, `top`: of the plot, on the screen.
+void plot_cells(std::ostream& out, const panel& p, const std::string& name, double bottom, double top, int width) {
+  out << "$" << name << " << EOD\n";
+  for (const auto& c : p.cells)
+    out << c.from_x << ' ' << c.to_x << ' ' << c.from_y << ' ' << c.to_y << ' ' << std::log10(std::clamp(c.value, 1.0, 100.0))
+        << '\n';
+  out << "EOD\nset style fill solid 1 noborder\nset palette defined (0 '#f4f4f2', 0.5 '#f3d9a4', 1 '" << colour::far << "', 2 '"
+      << colour::slip << "')\nset cbrange [0:2]\nset cbtics ('1' 0, '3' 0.477, '10' 1, '30' 1.477, '100' 2) nomirror\n"
+      << "set colorbox user origin screen " << 1 - 58.0 / width << ", screen " << bottom << " size screen " << 12.0 / width
+      << ", screen " << top - bottom << "\n"
+      << "plot $" << name << " using (($1+$2)/2):(($3+$4)/2):1:2:3:4:5 with boxxyerror lc palette notitle\n";
+}
+
 void write_panel(std::ostream& out, const panel& p, const std::string& name, double bottom, double top, int width,
                  double height) {
   for (std::size_t c = 0; c < p.curves.size(); ++c) write_data(out, "$" + name + "_" + std::to_string(c), p.curves[c]);
@@ -83,8 +97,12 @@ void write_panel(std::ostream& out, const panel& p, const std::string& name, dou
   out << "set label 1 " << quoted(p.title) << " at screen " << 82.0 / width << ", screen " << top + 14 / height
       << " left noenhanced\nset key at screen " << 1 - 18.0 / width << ", screen " << top + 22 / height << "\nset xlabel "
       << quoted(p.x_label) << " noenhanced\nset ylabel " << quoted(p.y_label) << " noenhanced\n"
-      << "set lmargin at screen " << 82.0 / width << "\nset rmargin at screen " << 1 - 18.0 / width << "\nset bmargin at screen "
-      << bottom << "\nset tmargin at screen " << top << "\nplot ";
+      << "set lmargin at screen " << 82.0 / width << "\nset rmargin at screen " << 1 - (p.cells.empty() ? 18.0 : 70.0) / width
+      << "\nset bmargin at screen " << bottom << "\nset tmargin at screen " << top << "\nset ytics autofreq\n";
+  for (std::size_t i = 0; i < p.y_marks.size(); ++i)
+    out << (i == 0 ? "set ytics (" : "set ytics add (") << quoted(p.y_marks[i].second) << ' ' << p.y_marks[i].first << ")\n";
+  if (!p.cells.empty()) return plot_cells(out, p, name, bottom, top, width);
+  out << "plot ";
   for (std::size_t c = 0; c < p.curves.size(); ++c) {
     const curve& k = p.curves[c];
     out << (c > 0 ? ", " : "") << "$" << name << "_" << c << " using 1:2 with lines lw " << k.width << " dt " << k.dash

@@ -27,12 +27,19 @@ struct curve {
   int dash = 1;  ///< gnuplot's dash type; 1: solid
 };
 
+/// A rectangle of a map; 1 is pale, 100 and more dark.
+struct cell {
+  double from_x = 0, to_x = 0, from_y = 0, to_y = 0, value = 1;
+};
+
 struct panel {
   std::string title, x_label, y_label;
   std::vector<curve> curves;
   std::vector<std::pair<double, double>> heavy;  ///< intervals of x drawn as heavy line along the top
   std::optional<std::pair<double, double>> x_range, y_range;
   int height = 260;
+  std::vector<cell> cells{};                              ///< a map in place of curves, its key at the right
+  std::vector<std::pair<double, std::string>> y_marks{};  ///< in place of numbers
 };
 
 struct figure {

@@ -170,6 +170,7 @@
 #include <rosin/diagnose/clock_drift_effect.hpp>
 #include <rosin/diagnose/contact_as_one.hpp>
 #include <rosin/diagnose/contact_bristles.hpp>
+#include <rosin/diagnose/contact_cycle.hpp>
 #include <rosin/diagnose/contact_effects.hpp>
 #include <rosin/diagnose/contact_ripple.hpp>
 #include <rosin/diagnose/contact_slip_effects.hpp>
@@ -184,6 +185,8 @@
 #include <rosin/diagnose/law_choice.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
 #include <rosin/diagnose/lost_level.hpp>
+#include <rosin/diagnose/mismatch_class.hpp>
+#include <rosin/diagnose/mismatch_map.hpp>
 #include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/odd_pluck.hpp>
@@ -204,6 +207,7 @@
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 #include <rosin/diagnose/pluck_effects.hpp>
+#include <rosin/diagnose/pluck_judgement.hpp>
 #include <rosin/diagnose/pluck_prediction.hpp>
 #include <rosin/diagnose/pluck_scene.hpp>
 #include <rosin/diagnose/pluck_score.hpp>

@@ -76,19 +76,21 @@ inline void common_share(std::vector<contact_hypothesis>& hypotheses, const std:
   return speed_ripple_hypothesis(bench);
 }
 
-/// The likeliest effect once more with the other convention of torsional damping, which the effect itself may have hidden.
+/// The likeliest effect once more with other conventions of torsional damping, which the effect itself may have hidden.
 inline void reconsider_damping(stick_bench& bench, const std::vector<contact_take>& takes,
                                std::vector<contact_hypothesis>& hypotheses) {
   const auto best =
       std::max_element(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.density < b.density; });
   if (best == hypotheses.end() || best->gain < 100 || best->effect == "torsion" || !bench.model().torsion) return;
   const double before = bench.fit().density, held_out = bench.fit().held_out;
-  bench.use_damping(bench.damping() == torsion_damping::constant_q ? torsion_damping::viscous_modes
-                                                                   : torsion_damping::constant_q);
-  auto other = stick_hypothesis(bench, takes, best->effect);
-  other.density += bench.fit().density - before;
-  other.held_out_density += bench.fit().held_out - held_out;
-  if (other.density > best->density) *best = other;
+  torsion_damping likeliest = bench.damping();
+  for (const auto another : {otherwise_shared, otherwise_dispersed}) {
+    bench.use_damping(another(likeliest));
+    auto other = stick_hypothesis(bench, takes, best->effect);
+    other.density += bench.fit().density - before;
+    other.held_out_density += bench.fit().held_out - held_out;
+    if (other.density > best->density) *best = other, likeliest = bench.damping();
+  }
 }
 
 inline void add_stick_hypotheses(stick_bench& bench, const std::vector<contact_take>& takes, contact_findings& out) {

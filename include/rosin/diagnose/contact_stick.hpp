@@ -180,13 +180,13 @@ private:
     if (!usable()) return;
     use_damping(torsion_damping::constant_q);
     if (!model_.torsion) return;
-    const stick_design design = declared_;
-    const design_fit fit = fit_;
-    use_damping(torsion_damping::viscous_modes);
-    if (fit_.density > fit.density) return;
-    damping_ = torsion_damping::constant_q;
-    declared_ = design;
-    fit_ = fit;
+    for (const auto other : {otherwise_shared, otherwise_dispersed}) {
+      const torsion_damping damping = damping_;
+      const stick_design design = declared_;
+      const design_fit fit = fit_;
+      use_damping(other(damping));
+      if (!(fit_.density > fit.density)) damping_ = damping, declared_ = design, fit_ = fit;
+    }
   }
 
   void include_found(stick_design& d) {

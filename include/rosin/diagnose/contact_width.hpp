@@ -135,8 +135,10 @@ struct settled_width {
     out.fit = fit_design(out.design, floor);
     return out;
   };
-  auto constant = settled(torsion_damping::constant_q), viscous = settled(torsion_damping::viscous_modes);
-  return viscous.fit.density > constant.fit.density ? viscous : constant;
+  auto best = settled(torsion_damping::constant_q);
+  for (const auto other : {otherwise_shared, otherwise_dispersed})
+    if (auto tried = settled(other(best.model.damping)); tried.fit.density > best.fit.density) best = std::move(tried);
+  return best;
 }
 
 }  // namespace detail

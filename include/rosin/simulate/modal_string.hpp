@@ -36,6 +36,7 @@ struct modal_torsion {
   double speed_ratio = 0;      ///< torsional / transverse wave speed
   double impedance_ratio = 0;  ///< torsional, referred to the surface, / transverse impedance
   double quality = 15;         ///< of all torsional modes
+  bool causal = false;         ///< modes lie wider than harmonics, as a loss alike at all frequencies asks for (Kjartansson 1979)
 
   [[nodiscard]] bool present() const noexcept { return speed_ratio > 0 && impedance_ratio > 0; }
 };
@@ -148,8 +149,10 @@ namespace detail {
   if (!rig.torsion.present()) return modes;
   const double speed = rig.torsion.speed_ratio * rig.string.wave_speed_m_s();
   const double density = rig.torsion.impedance_ratio * rig.string.impedance_Ns_m() / speed;
+  const double power = rig.torsion.causal ? 1 / (1 - 1 / (pi * rig.torsion.quality)) : 1;
   for (int n = 1; n * speed / (2 * rig.string.length_m) <= limit_Hz; ++n)
-    modes.push_back({n, n * pi * speed / rig.string.length_m, 1 / rig.torsion.quality, density * rig.string.length_m / 2, 0});
+    modes.push_back({n, std::pow(n, power) * pi * speed / rig.string.length_m, 1 / rig.torsion.quality,
+                     density * rig.string.length_m / 2, 0});
   return modes;
 }
 

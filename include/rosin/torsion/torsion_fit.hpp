@@ -10,7 +10,7 @@
 // with a level for each take (errors of the scales) and two small terms C1, C3 for what the contact yields besides (what a string
 // of finite thickness, or a simulation of finitely many modes, does differently from a point on an ideal one). Sticking is
 // found, not given, and found anew as torsion gets clearer. A grid of speeds, on a part of one take and with a cost that
-// bears slips, finds where to start; Gauss-Newton steps do the rest, for both conventions of damping; the likelier wins.
+// bears slips, finds where to start; Gauss-Newton steps do the rest, for each convention of damping; the likeliest wins.
 //
 #pragma once
 
@@ -34,7 +34,25 @@ struct torsion_values {
 };
 
 /// How the loss is shared out between the resonances (torsion_modes.hpp).
-enum class torsion_damping { constant_q, viscous_modes };
+enum class torsion_damping { constant_q, viscous_modes, causal_q, causal_modes };
+[[nodiscard]] constexpr bool in_modes(torsion_damping d) noexcept {
+  return d == torsion_damping::viscous_modes || d == torsion_damping::causal_modes;
+}
+[[nodiscard]] constexpr bool is_causal(torsion_damping d) noexcept {
+  return d == torsion_damping::causal_q || d == torsion_damping::causal_modes;
+}
+[[nodiscard]] constexpr torsion_damping convention(bool modes, bool causal) noexcept {
+  return causal ? (modes ? torsion_damping::causal_modes : torsion_damping::causal_q)
+                : (modes ? torsion_damping::viscous_modes : torsion_damping::constant_q);
+}
+/// With dispersion in place of without, or the other way about.
+[[nodiscard]] constexpr torsion_damping otherwise_dispersed(torsion_damping d) noexcept {
+  return convention(in_modes(d), !is_causal(d));
+}
+/// Modes in place of waves, or the other way about.
+[[nodiscard]] constexpr torsion_damping otherwise_shared(torsion_damping d) noexcept {
+  return convention(!in_modes(d), is_causal(d));
+}
 
 /// Surface velocity for 1 N at the contact of a take.
 struct torsion_at_contact {
@@ -47,15 +65,18 @@ struct torsion_at_contact {
       : guide{torsion_of(take.delay_s, take.impedance_Ns_m, v.speed_ratio, v.impedance_ratio, v.q)},
         modes{guide.delay_s, guide.impedance_Ns_m, guide.q,
               torsion_modes::seen_below(take.window().edge_Hz, guide.delay_s[0] + guide.delay_s[1])},
-        damping{d}, rest_m_N{d == torsion_damping::viscous_modes ? modes.rest_m_N() : 0.0} {}
+        damping{d} {
+    guide.causal = modes.causal = is_causal(d);
+    if (in_modes(d)) rest_m_N = modes.rest_m_N();
+  }
   [[nodiscard]] std::complex<double> operator()(double f) const noexcept {
-    if (damping == torsion_damping::constant_q) return guide(f);
+    if (!in_modes(damping)) return guide(f);
     return modes(f) + std::complex<double>(0, 2 * std::numbers::pi * f * rest_m_N);
   }
   /// How long it rings, to a thousandth.
   [[nodiscard]] double memory_s() const noexcept { return guide.memory_s(1e-3); }
   [[nodiscard]] std::vector<std::complex<double>> on_grid(double step_Hz, std::size_t count) const {
-    if (damping == torsion_damping::constant_q) return guide.on_grid(step_Hz, count);
+    if (!in_modes(damping)) return guide.on_grid(step_Hz, count);
     auto out = modes.on_grid(step_Hz, count);
     for (std::size_t k = 0; k < count; ++k)
       out[k] += std::complex<double>(0, 2 * std::numbers::pi * step_Hz * static_cast<double>(k) * rest_m_N);
@@ -78,7 +99,7 @@ struct torsion_fit_result {
 
 namespace detail {
 
-/// What neither convention of damping nor C1, C3 absorb, in the logarithms: measured on simulated rigs of both conventions.
+/// What no convention of damping nor C1, C3 absorb, in the logarithms: measured on simulated rigs of two conventions.
 inline const Eigen::Vector3d torsion_model_error{0.0007, 0.008, 0.02};
 
 inline void add_to(std::vector<double>& to, const std::vector<double>& what, double factor = 1) {
@@ -262,6 +283,10 @@ inline void judge_torsion(const torsion_state& best, const std::vector<stick_rec
   other.damping = torsion_damping::viscous_modes;
   best = detail::settle(records, best, 3);
   other = detail::settle(records, other, 4);
+  if (detail::score(other) > detail::score(best)) best = other;
+  other = best;
+  other.damping = otherwise_dispersed(best.damping);
+  other = detail::settle(records, other, 3);
   if (detail::score(other) > detail::score(best)) best = other;
   if (!best.sane) return failure{"torsion: the fit ran away: no torsion makes the surface steady while it sticks"};
   torsion_fit_result result{.value = best.at, .damping = best.damping};

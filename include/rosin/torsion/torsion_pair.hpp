@@ -7,7 +7,7 @@
 //
 //     H_ij = sinh(g x_<) sinh(g (T - x_>)) / (Z_T sinh(g T)),    T = t_a + t + t_b,  g = i w + |w| / (2 Q),
 //
-// x_< and x_> the travel times from the near end to the nearer and to the farther of i and j; with viscous modes
+// x_< and x_> the travel times from the near end to the nearer and to the farther of i and j (dispersed where that is asked for); with viscous modes
 // (torsion_modes.hpp) the sum H_ij = (2 / (Z_T T)) sum_n sin(n pi x_i / T) sin(n pi x_j / T) i w / (w_n^2 - w^2 + i w w_n / Q),
 // and the compliance of the modes that are not summed.
 //
@@ -29,22 +29,26 @@ public:
   torsion_pair(const std::array<double, 3>& delay_s, double impedance_Ns_m, double q, torsion_damping damping, int modes)
       : a_{delay_s[0]}, b_{delay_s[0] + delay_s[1]}, all_{delay_s[0] + delay_s[1] + delay_s[2]},
         impedance_{impedance_Ns_m}, q_{q}, damping_{damping} {
-    if (damping == torsion_damping::constant_q) return;
+    if (!in_modes(damping)) return;
     rest_ = {static_compliance(a_, a_), static_compliance(b_, b_), static_compliance(a_, b_)};
     for (int n = 1; n <= modes; ++n) {
       const double turn = n * std::numbers::pi / all_, at_a = std::sin(turn * a_), at_b = std::sin(turn * b_),
                    weight = 2 / (impedance_ * all_);
-      modes_.push_back({turn, weight * at_a * at_a, weight * at_b * at_b, weight * at_a * at_b});
+      const double wn = torsion_modes::ratio(n, q_, is_causal(damping)) * std::numbers::pi / all_;
+      modes_.push_back({wn, weight * at_a * at_a, weight * at_b * at_b, weight * at_a * at_b});
       for (std::size_t k = 0; k < 3; ++k) rest_[k] -= modes_.back()[k + 1] / (turn * turn);
     }
+    const double wider = torsion_modes::ratio(modes, q_, is_causal(damping)) / modes;
+    for (double& r : rest_) r /= wider * wider;
   }
 
   [[nodiscard]] response operator()(double frequency_Hz) const noexcept {
     const double w = 2 * std::numbers::pi * frequency_Hz;
     if (w == 0) return {};
-    if (damping_ == torsion_damping::constant_q) {
-      const complex g(0.5 * w / q_, w), scale = 1.0 / (impedance_ * std::sinh(g * all_)), a = std::sinh(g * a_),
-                                        b = std::sinh(g * (all_ - b_));
+    if (!in_modes(damping_)) {
+      const double sooner = is_causal(damping_) ? std::pow(w * all_ / std::numbers::pi, -1 / (std::numbers::pi * q_)) : 1;
+      const complex g(0.5 * w / q_, w * sooner), scale = 1.0 / (impedance_ * std::sinh(g * all_)), a = std::sinh(g * a_),
+                                                 b = std::sinh(g * (all_ - b_));
       return {a * std::sinh(g * (all_ - a_)) * scale, b * std::sinh(g * b_) * scale, a * b * scale};
     }
     const complex turn(0, w);

@@ -7,8 +7,13 @@
 //     v_T / f = (1 / (2 Z_T)) 2 sinh(g_1) sinh(g_2) / sinh(g_1 + g_2),    g_j = i w tau_j + |w| tau_j / (2 Q)
 //
 // (Woodhouse, Schumacher & Garoff (2000), section IV). Written with decaying exponentials
-// only, (1 - e^{-2 g_1})(1 - e^{-2 g_2}) / (1 - e^{-2 (g_1 + g_2)}), it neither overflows nor cancels at high frequency. It is
-// one transfer function, applied to the whole record at once: Q is as low as 15, so that all memory ends within a few dozen of
+// only, (1 - e^{-2 g_1})(1 - e^{-2 g_2}) / (1 - e^{-2 (g_1 + g_2)}), it neither overflows nor cancels at high frequency. A loss of
+// this kind answers a little before it is asked; what cannot do so carries high frequencies faster (Kjartansson,
+// J. Geophys. Res. 84, 1979):
+//
+//     tau_j (|w| / w_1)^(-1 / (pi Q))     in place of tau_j, w_1 the first torsional resonance, where the speed is told.
+//
+// It is one transfer function, applied to the whole record at once: Q is as low as 15, so that all memory ends within a few dozen of
 // the torsional periods, and zeros behind the record keep its end out of its beginning.
 //
 #pragma once
@@ -30,26 +35,35 @@ struct torsion_waveguide {
   std::array<double, 2> delay_s{};  ///< travel times to the near and the far end
   double impedance_Ns_m = 0;
   double q = 15;
+  bool causal = false;  ///< with the dispersion that belongs to the loss
 
   /// Surface velocity for 1 N at a frequency in Hz, m/s per N.
   [[nodiscard]] std::complex<double> operator()(double frequency_Hz) const noexcept {
     const double w = 2 * std::numbers::pi * frequency_Hz;
     if (w == 0) return 0;
+    const double sooner = causal ? share_of_delay(std::abs(w)) : 1;
     const auto round_trip = [&](double delay) {
-      return std::exp(-2.0 * std::complex<double>(std::abs(w) * delay / (2 * q), w * delay));
+      return std::exp(-2.0 * std::complex<double>(std::abs(w) * delay / (2 * q), w * delay * sooner));
     };
     const std::complex<double> a = round_trip(delay_s[0]), b = round_trip(delay_s[1]);
     return (1.0 - a) * (1.0 - b) / (1.0 - a * b) / (2 * impedance_Ns_m);
   }
 
-  /// The same at 0, step_Hz, ... (count - 1) step_Hz: one product from a frequency to the next.
+  /// Of the travel times at the first resonance, those at another angular frequency.
+  [[nodiscard]] double share_of_delay(double w) const noexcept {
+    return std::pow(w * (delay_s[0] + delay_s[1]) / std::numbers::pi, -1 / (std::numbers::pi * q));
+  }
+
+  /// The same at 0, step_Hz, ... (count - 1) step_Hz: one product from a frequency to the next, where nothing disperses.
   [[nodiscard]] std::vector<std::complex<double>> on_grid(double step_Hz, std::size_t count) const {
     constexpr std::size_t anew = 256;
     const double w = 2 * std::numbers::pi * step_Hz;
+    std::vector<std::complex<double>> out(count);
+    for (std::size_t k = 0; causal && k < count; ++k) out[k] = (*this)(step_Hz * static_cast<double>(k));
+    if (causal) return out;
     std::array<std::complex<double>, 2> rate, turn, at;
     for (std::size_t j = 0; j < 2; ++j)
       rate[j] = -2 * w * delay_s[j] * std::complex<double>(1 / (2 * q), 1), turn[j] = std::exp(rate[j]);
-    std::vector<std::complex<double>> out(count);
     for (std::size_t k = 0; k < count; ++k) {
       for (std::size_t j = 0; j < 2; ++j) at[j] = k % anew == 0 ? std::exp(rate[j] * static_cast<double>(k)) : at[j] * turn[j];
       if (k > 0) out[k] = (1.0 - at[0]) * (1.0 - at[1]) * plain::reciprocal((1.0 - at[0] * at[1]) * (2 * impedance_Ns_m));

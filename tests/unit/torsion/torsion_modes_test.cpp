@@ -32,6 +32,22 @@ TEST_CASE("torsion modes: at Q = 15 the conventions agree at the first resonance
   CHECK(std::arg(modes(0.5 * f1)) - std::arg(guide(0.5 * f1)) > 0.2 / 15);
 }
 
+TEST_CASE("torsion modes: wider than harmonics they are the waves that disperse") {
+  auto modes = at(120, 400);
+  modes.causal = true;
+  rosin::torsion_waveguide guide{modes.delay_s, 0.6125, 120};
+  const auto apart = [&](double f) {
+    return std::abs(modes(f) + std::complex<double>(0, 2 * std::numbers::pi * f * modes.rest_m_N()) - guide(f)) /
+           std::abs(guide(f));
+  };
+  const double third = rosin::torsion_modes::ratio(3, 120, true) * 0.5 / one_way;
+  CHECK(apart(third) > 0.15);
+  guide.causal = true;
+  CHECK(apart(third) < 0.03);
+  CHECK(rosin::torsion_modes::ratio(1, 15, true) == 1);
+  CHECK(rosin::torsion_modes::ratio(7, 15, false) == 7);
+}
+
 TEST_CASE("torsion modes: the oscillators that the simulation steps") {
   const rosin::string_parameters string{
       .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};

@@ -1,0 +1,94 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What a diagnosis of plucks says, and how takes that were not fitted judge it. What they do not bear out is dropped. Explained is
+// what leaves on them no more than a quarter of the noise beyond it, or 12 % of what there was and six times the noise. A mismatch
+// needs no name: it is also where they are off by more than 0.6 of the noise, and where what rings is noisier than what was held.
+// They judge the likeliest of the models that were not taken as well.
+//
+#pragma once
+
+#include <rosin/diagnose/pluck_prediction.hpp>
+
+namespace rosin {
+
+/// One model that was tried.
+struct pluck_hypothesis {
+  std::vector<std::string> ids;  ///< effects, with their place
+  double log_evidence = 0;       ///< relative to the best, natural logarithm
+  std::optional<double> left{};  ///< rms residual / rms recorded, on takes that were not fitted; of the likeliest few
+  scene_fit fit{};
+};
+
+struct pluck_diagnosis {
+  scene_data data;
+  pluck_fit_result declared;  ///< the fit of the declared model
+  scene_fit base, best;       ///< the same over the horizon of the best; and with what was found
+  std::vector<pluck_hypothesis> ranking;
+  std::vector<std::string> alternatives;  ///< to the last effect found: within 5 nats, cannot be told from it
+  std::vector<double> found_gain;         ///< tempered gain of ln L of each effect found
+  pluck_mismatch mismatch;
+  bool mismatched = false, explained = true;
+  double before = 0, after = 0, floor = 0;  ///< rms residual / rms recorded, on held-out takes where there are any
+  std::vector<std::string> held_out;
+};
+
+namespace detail {
+
+/// What is real shows in takes that were not fitted, too.
+inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<pluck_take>& held, double noise) {
+  constexpr double beyond_doubt = 200, least = 3;
+  while (!held.empty() && !d.best.effects.empty() && d.found_gain[d.best.effects.size() - 1] < beyond_doubt &&
+         held_out_gain(d.data, d.best, held, noise) < least) {
+    const double horizon = d.best.horizon_periods;
+    const scene_fit less = without(d.data, d.best, d.best.effects.size() - 1);
+    d.best = fit_scene(d.data, less.effects, less.value, {{1000, horizon, true, freedom::all}}, {noise, noise});
+    d.found_gain.resize(d.best.effects.size());
+    d.alternatives.clear();
+  }
+  d.mismatched = d.mismatched && !d.best.effects.empty();
+}
+
+/// What the likeliest models leave of takes that were not fitted, wrong ones with as many parameters among them.
+inline void judge_ranking(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise) {
+  constexpr std::size_t most = 4;
+  for (std::size_t i = 0; i < std::min(most, d.ranking.size()); ++i) {
+    auto& h = d.ranking[i];
+    double power = 0;
+    for (const pluck_take& take : judged) power += std::pow(predicted(d.data, h.fit, take, noise)[0], 2);
+    h.left = std::sqrt(power / static_cast<double>(judged.size()));
+  }
+}
+
+/// Before and after on takes that were not fitted, and whether that is an explanation. `noise_seen`: before the releases as well;
+/// much noise that nothing else bears out may be what the model leaves.
+inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool noise_seen, bool modulated) {
+  constexpr double much_noise = 0.05;
+  const double most_left = d.best.effects.size() > 1 ? 2 : 6;  // of the floor: who may take several names has to leave less
+  const bool brief = d.best.falls_short();
+  if (brief) d.base.horizon_periods = d.best.horizon_periods = 1e9;
+  scene_fit plain = d.base;
+  plain.horizon_periods = d.best.horizon_periods;
+  for (const pluck_take& take : judged) {
+    const auto b = predicted(d.data, plain, take, noise), a = predicted(d.data, d.best, take, noise);
+    d.before += b[0] * b[0], d.after += a[0] * a[0], d.floor += a[1] * a[1];
+    d.held_out.push_back(take.name);
+  }
+  for (double* x : {&d.before, &d.after, &d.floor}) *x = std::sqrt(*x / static_cast<double>(judged.size()));
+  const auto beyond_noise = [&](double x) { return std::sqrt(std::max(0.0, x * x - d.floor * d.floor)); };
+  const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
+  const bool doubtful = !noise_seen && d.floor > much_noise, known_ends = d.data.layout.has_ends();  // never to the last digit
+  const bool complete =
+      !doubtful && !brief &&
+      ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
+  d.mismatched = d.mismatched || (left > 1.5 && !(known_ends && was <= 0.25 * d.floor)) || modulated || doubtful || brief ||
+                 was > 0.6 * d.floor;
+  d.explained = !d.mismatched || (complete && !d.best.effects.empty());
+  if (d.explained || excess <= 0.5 * was) return;
+  d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it
+  d.found_gain.clear(), d.alternatives.clear(), d.after = d.before;
+}
+
+}  // namespace detail
+
+}  // namespace rosin

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// By a modal string whose wire lets go slowly: two models of as many parameters, the right one and another.
+#include <rosin/diagnose/pluck_judgement.hpp>
+
+#include <rosin/diagnose/pluck_diagnosis.hpp>
+
+#include "plucked.hpp"
+
+#include <doctest/doctest.h>
+
+TEST_CASE("pluck judgement: a pluck set aside is left at the noise by the right model, not by a wrong one of as many parameters") {
+  constexpr double slow = 40e-6;
+  const std::vector takes{test::modal_pluck(1, 1, slow), test::modal_pluck(0.5, 2, slow)}, held{test::modal_pluck(0.75, 3, slow)};
+  const auto d = rosin::diagnose_plucks(
+      takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+        const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};
+        auto all = rosin::catalogue_without({}, facts, fit.limits);
+        std::erase_if(all, [](const auto& e) { return e.name != "slow-release" && e.name != "channel-skew"; });
+        return all;
+      });
+  REQUIRE_MESSAGE(d, d.error());
+  REQUIRE(d->best.effects.size() == 1);
+  CHECK(d->best.effects[0].name == "slow-release");
+  REQUIRE(d->ranking.size() >= 2);
+  for (const auto& h : d->ranking) {
+    REQUIRE(h.left);
+    CHECK(h.fit.effects.size() == h.ids.size());
+    if (h.ids == std::vector<std::string>{"slow-release"}) CHECK(*h.left == doctest::Approx(d->after).epsilon(0.02));
+    else CHECK(*h.left > 3 * d->floor);
+  }
+}
