@@ -28,16 +28,21 @@ make late short skew=1e-5
 page=()
 if command -v gnuplot >/dev/null; then page=(--report late.html); else echo "skipped: the report, no gnuplot"; fi
 expect 0 diagnose late --json late.json "${page[@]}"
-says "a string of the tests: explained" "The far channel comes 10 us late against the near one." "channel-skew" "assumed: impedance_Ns_m"
+says "a string of the tests: explained" "The far channel comes 10 us late against the near one." "channel-skew" "assumed: impedance_Ns_m" \
+  "sensor or string: the force's two versions disagree" "behind wave "
 no_messages
 holds late.json "$explained" "$improved" '$m->{effect} eq "channel-skew"' 'about(value("skew_s"), 1e-5, 0.005)' \
   '"@{$d->{ranking}[0]{effects}}" eq "channel-skew" && $d->{ranking}[0]{log10_evidence} == 0' '"@{$d->{fit}{held_out}}" eq "pluck-3"' \
   '$d->{mismatch}{take} =~ /pluck-[12]/ && $d->{mismatch}{residual_over_noise} > 10' '$d->{mismatch}{time_s}[0] > 0.009' \
-  '@{$d->{assumed}} > 0 && $d->{calibration}{fundamental_Hz}{value} > 240'
+  '@{$d->{assumed}} > 0 && $d->{calibration}{fundamental_Hz}{value} > 240' \
+  '$d->{mismatch}{class} eq "sensor-or-string" && $d->{mismatch}{wave} > 0' \
+  '$d->{mismatch}{maps}{pluck}{force}{parting_N} > 3 * $d->{mismatch}{maps}{pluck}{force}{parting_noise_N}' \
+  '@{$d->{mismatch}{maps}{pluck}{far}{over_noise}} + 1 == @{$d->{mismatch}{maps}{pluck}{far}{time_s}}' \
+  'about($d->{ranking}[0]{left}, $d->{fit}{after}, 0.02)' '!grep { $_->{left} && "@{$_->{effects}}" !~ /channel-skew/ && $_->{left} < 2 * $d->{fit}{after} } @{$d->{ranking}}'
 expect 0 validate late.json
 if [ ${#page[@]} -gt 0 ]; then
-  # Before, after and spectra; the sentence; and nothing that comes from elsewhere.
-  same "$(grep -c '<svg' late.html)" 3
+  # Before, after, spectra, the map, the plucking force; the sentence; and nothing that comes from elsewhere.
+  same "$(grep -c '<svg' late.html)" 5
   grep -q 'class="summary">The far channel comes 10 us late' late.html || { echo "FAILED: no sentence on the page"; failures=1; }
   grep -q 'runner-up' late.html || { echo "FAILED: no runners-up on the page"; failures=1; }
   ! grep -E '(src|href)="http' late.html || { echo "FAILED: the page needs the network"; failures=1; }

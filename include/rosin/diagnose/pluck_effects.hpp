@@ -41,7 +41,7 @@ inline pluck_effect bending_stiffness_effect(const string_facts&) {
 /// 1/Q = 1/Q0 + loss f.
 inline pluck_effect internal_loss_effect(const string_facts&) {
   return {.name = "frequency-dependent-loss",
-          .parameters = {{"loss_internal_s", -1e-8, 3e-5, 1e-11}},
+          .parameters = {{"loss_internal_s", 0, 3e-5, 1e-11}},
           .starts = {{1e-8}},
           .apply = [](pluck_scene& s, const double* v, int) { s.string.loss.internal_s += v[0]; }};
 }
@@ -49,7 +49,7 @@ inline pluck_effect internal_loss_effect(const string_facts&) {
 /// 1/Q = 1/Q0 + loss / sqrt(f), the boundary layer's part.
 inline pluck_effect air_loss_effect(const string_facts&) {
   return {.name = "air-loss",
-          .parameters = {{"loss_air_sqrt_Hz", -1e-3, 1, 1e-6}},
+          .parameters = {{"loss_air_sqrt_Hz", 0, 1, 1e-6}},
           .starts = {{1e-3}},
           .apply = [](pluck_scene& s, const double* v, int) { s.string.loss.air_sqrt_Hz += v[0]; }};
 }

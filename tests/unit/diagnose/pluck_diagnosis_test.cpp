@@ -48,6 +48,27 @@ TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck
   CHECK(d->mismatch.residual_over_noise > 2);
 }
 
+TEST_CASE("a loss that grows with frequency is none to the air of less than nothing") {
+  auto rig = test::plucked_rig;
+  rig.string.loss.internal_s = 3e-8;
+  std::vector<rosin::pluck_take> takes;
+  for (const double force_N : {1.0, 0.5, 0.75})
+    takes.push_back(
+        test::recorded(*rosin::simulate_pluck(rig, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.1}),
+                       force_N, takes.size()));
+  const std::vector held{takes.back()};
+  takes.pop_back();
+  const auto d = rosin::diagnose_plucks(
+      takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+        const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};
+        return std::vector<rosin::pluck_effect>{rosin::air_loss_effect(facts)};
+      });
+  REQUIRE_MESSAGE(d, d.error());
+  CHECK(d->best.effects.empty());
+  CHECK(d->mismatched);
+  CHECK_FALSE(d->explained);
+}
+
 TEST_CASE(
     "an end that swallows what comes, and one that is heavy and softly held: each is found, and what the wire held comes out "
     "right" *
