@@ -9,7 +9,7 @@
 //     worth          a further effect (any, where terminations are declared to move: these count as found) takes away at least
 //                    two thirds of what the model so far leaves beyond the noise, and that is at least a hundredth (in
 //                    amplitude) of what there was to explain: no model of a bead is exact either. Of less than that it takes
-//                    away nearly all, and gains 40.
+//                    away nearly all, and gains 40. Two that are not worth it alone may be together, to a ninth.
 //
 // Two effects found one after the other may stand in one another's place; each is then taken out and sought anew.
 //
@@ -62,13 +62,14 @@ public:
   }
 
   void run(int most_effects) {
-    int round = 0;
-    while (round < most_effects && add_one(round)) ++round;
+    const auto found = [&] { return static_cast<int>(now_.effects.size()); };
+    while (found() < most_effects && add_one(found())) {
+    }
     d_.best = exchanged(d_.data, now_, all_, 1, noise_);
     if (d_.found_gain.size() > d_.best.effects.size()) d_.found_gain.resize(d_.best.effects.size());
     if (d_.best.effects.empty()) d_.best = d_.base;
+    rank_all();
     std::sort(d_.ranking.begin(), d_.ranking.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
-    if (d_.ranking.empty()) return;
     for (double top = d_.ranking.front().log_evidence; auto& h : d_.ranking) h.log_evidence -= top;
   }
   /// What no fit could take for anything else, the mean of both channels.
@@ -117,7 +118,7 @@ private:
   void leave_alone() {
     d_.base = fit_scene(d_.data, {}, now_.value, {{1000, now_.horizon_periods, true, freedom::all}}, weigh_);
     noise_ = d_.base.quality.noise;
-    d_.ranking.push_back({{}, 0.0, {}, d_.base});
+    rank(d_.base);
   }
   [[nodiscard]] comparison compare(const scene_fit& before, const scene_fit& tried) const {
     comparison c;
@@ -128,9 +129,15 @@ private:
     c.left = std::max(0.0, with - c.samples), c.was = std::max(1e-9, without - c.samples);
     return c;
   }
-  void rank(const scene_fit& f, const comparison& c) {
-    const double log_evidence = -0.5 * cost_of(f, noise_) / c.temper - 0.5 * free_parameters(f) * std::log(c.samples);
-    d_.ranking.push_back({ids_of(f), log_evidence, {}, f});
+  void rank(const scene_fit& f) { d_.ranking.push_back({ids_of(f), 0, {}, f}); }
+  /// All by one noise and one misfit, those of the best, and as if they had looked as far.
+  void rank_all() {
+    const auto samples = [](const scene_fit& f) { return std::max(1.0, f.quality.samples[0] + f.quality.samples[1]); };
+    const auto there = [&](const pluck_hypothesis& h) { return h.ids == ids_of(d_.best); };
+    if (std::none_of(d_.ranking.begin(), d_.ranking.end(), there)) rank(d_.best);
+    const double n = samples(d_.best), temper = std::max(1.0, d_.best.quality.inflation());
+    for (auto& h : d_.ranking)
+      h.log_evidence = -0.5 * cost_of(h.fit, noise_) * n / (samples(h.fit) * temper) - 0.5 * free_parameters(h.fit) * std::log(n);
   }
   void accept(const std::vector<scene_fit>& fits, const comparison& c) {
     const scene_fit& tried = fits.front();
@@ -162,13 +169,32 @@ private:
       d_.base = before, all_there_was_ = d_.data.layout.has_ends() ? done_by_ends(tried.horizon_periods, c.samples) : c.was;
     const bool worth = is_worth(c, tried.effects.back(), round);
     for (const scene_fit& f : fits)
-      if (worth || &f == &tried) rank(f, c);
-    if (round == 0) rank(before, c);
+      if (worth || &f == &tried) rank(f);
+    if (round == 0) rank(before);
     // Linear parameters of which there are many (hum) gain half a unit each from noise alone.
     const double chance = std::max(0, static_cast<int>(tried.effects.back().parameters.size()) - 3);
-    if (!(c.gain > 14 + 0.5 * chance + 2 * std::sqrt(chance)) || !worth) return false;
+    if (!(c.gain > 14 + 0.5 * chance + 2 * std::sqrt(chance))) return false;
+    if (!worth) return round == 1 && add_with_another(fits, c);
     accept(fits, c);
     return round == 0 || now_.quality.inflation() != 1.0;
+  }
+  /// Two that take away too little each, as the other hides what they do, may be worth it together: to a ninth.
+  bool add_with_another(const std::vector<scene_fit>& first, const comparison& alone) {
+    const scene_fit as_was = now_;
+    now_ = first.front();
+    const std::vector<scene_fit> fits = candidates(2);
+    now_ = as_was;
+    if (fits.empty()) return false;
+    const scene_fit& tried = fits.front();
+    const scene_fit before =
+        fit_scene(d_.data, now_.effects, now_.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh_);
+    for (std::size_t c = 0; c < 2; ++c) noise_[c] = std::min(noise_[c], tried.quality.noise[c]);
+    const comparison both = compare(before, tried);
+    if (!(both.left < both.was / 9 && both.was > 1e-4 * all_there_was_)) return false;
+    rank(tried);
+    accept(first, alone);
+    accept(fits, both);
+    return true;
   }
 
   pluck_diagnosis& d_;

@@ -234,3 +234,43 @@ TEST_CASE(
     CHECK(d->best.sd[at] < 0.25);
   }
 }
+
+TEST_CASE("three that hide each other: neither of the last two takes away enough, both together do; and they come first") {
+  rosin::modal_rig rig;
+  rig.string = {.length_m = 0.479,
+                .tension_N = 83.92,
+                .fundamental_Hz = 440.9,
+                .bending_stiffness_Nm2 = 2.15e-5,
+                .loss = {.quality = 1200, .air_sqrt_Hz = 4.4e-3}};
+  rosin::rig_burden burden;
+  burden.detuning = -1.167e-3, burden.coupling = -0.0523;
+  burden.sensors.quadratic_per_N[1] = 0.055;
+  std::vector<rosin::pluck_take> takes;
+  for (const auto& [force_N, position] : {std::pair{1.0, 0.206}, std::pair{0.5, 0.277}, std::pair{0.75, 0.133}}) {
+    takes.push_back(test::recorded(
+        *rosin::simulate_pluck(rig, burden, {.position = position, .force_N = force_N, .release_s = 0.004, .duration_s = 0.14}),
+        force_N, takes.size()));
+    takes.back().position = position + 0.001;
+  }
+  const std::vector held{takes.back()};
+  takes.pop_back();
+  const auto d = rosin::diagnose_plucks(
+      takes, held, {.fundamental_Hz = 441}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+        const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.1987, 0.479, takes.size()};
+        auto all = rosin::catalogue_without({}, facts, fit.limits);
+        std::erase_if(all, [](const rosin::pluck_effect& e) {
+          return e.name != "second-polarization" && e.name != "air-loss" && e.name != "channel-crosstalk" &&
+                 e.name != "sensor-nonlinearity";
+        });
+        return all;
+      });
+  REQUIRE_MESSAGE(d, d.error());
+  CHECK(d->explained);
+  std::vector<std::string> names;
+  for (const auto& e : d->best.effects) names.push_back(e.name);
+  std::sort(names.begin(), names.end());
+  CHECK(names == std::vector<std::string>{"air-loss", "second-polarization", "sensor-nonlinearity"});
+  CHECK(d->after < 1.1 * d->floor);
+  CHECK(d->ranking.front().ids.size() == 3);
+  CHECK(d->ranking[1].log_evidence < -1000);
+}
