@@ -66,7 +66,7 @@ TEST_CASE("torsion fit: speed to 1 %, impedance to 5 %, Q to 20 %, without being
     CHECK(std::abs(fit->value.impedance_ratio - c.torsion.impedance_ratio) < 3.5 * fit->sd.impedance_ratio);
     CHECK(std::abs(fit->value.q - c.torsion.quality) < 3.5 * fit->sd.q);
     CHECK(fit->sd.speed_ratio < 0.005 * fit->value.speed_ratio);
-    CHECK(fit->damping == rosin::convention(true, c.torsion.causal));  // what the simulation has
+    CHECK(fit->damping == rosin::torsion_convention(true, c.torsion.causal));  // what the simulation has
     CHECK(fit->gain > 500);
   }
 }
