@@ -33,27 +33,6 @@ struct torsion_values {
   }
 };
 
-/// How the loss is shared out between the resonances (torsion_modes.hpp).
-enum class torsion_damping { constant_q, viscous_modes, causal_q, causal_modes };
-[[nodiscard]] constexpr bool in_modes(torsion_damping d) noexcept {
-  return d == torsion_damping::viscous_modes || d == torsion_damping::causal_modes;
-}
-[[nodiscard]] constexpr bool is_causal(torsion_damping d) noexcept {
-  return d == torsion_damping::causal_q || d == torsion_damping::causal_modes;
-}
-[[nodiscard]] constexpr torsion_damping torsion_convention(bool modes, bool causal) noexcept {
-  return causal ? (modes ? torsion_damping::causal_modes : torsion_damping::causal_q)
-                : (modes ? torsion_damping::viscous_modes : torsion_damping::constant_q);
-}
-/// With dispersion in place of without, or the other way about.
-[[nodiscard]] constexpr torsion_damping otherwise_dispersed(torsion_damping d) noexcept {
-  return torsion_convention(in_modes(d), !is_causal(d));
-}
-/// Modes in place of waves, or the other way about.
-[[nodiscard]] constexpr torsion_damping otherwise_shared(torsion_damping d) noexcept {
-  return torsion_convention(!in_modes(d), is_causal(d));
-}
-
 /// Surface velocity for 1 N at the contact of a take.
 struct torsion_at_contact {
   torsion_waveguide guide;

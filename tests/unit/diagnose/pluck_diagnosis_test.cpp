@@ -235,7 +235,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("three that hide each other: neither of the last two takes away enough, both together do; and they come first") {
+TEST_CASE("three that hide each other: neither of the last two takes away enough, both together do; and they come first" *
+          doctest::test_suite("long")) {
   rosin::modal_rig rig;
   rig.string = {.length_m = 0.479,
                 .tension_N = 83.92,
@@ -248,7 +249,7 @@ TEST_CASE("three that hide each other: neither of the last two takes away enough
   std::vector<rosin::pluck_take> takes;
   for (const auto& [force_N, position] : {std::pair{1.0, 0.206}, std::pair{0.5, 0.277}, std::pair{0.75, 0.133}}) {
     takes.push_back(test::recorded(
-        *rosin::simulate_pluck(rig, burden, {.position = position, .force_N = force_N, .release_s = 0.004, .duration_s = 0.14}),
+        *rosin::simulate_pluck(rig, burden, {.position = position, .force_N = force_N, .release_s = 0.004, .duration_s = 0.11}),
         force_N, takes.size()));
     takes.back().position = position + 0.001;
   }
@@ -259,9 +260,10 @@ TEST_CASE("three that hide each other: neither of the last two takes away enough
         const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.1987, 0.479, takes.size()};
         auto all = rosin::catalogue_without({}, facts, fit.limits);
         std::erase_if(all, [](const rosin::pluck_effect& e) {
-          return e.name != "second-polarization" && e.name != "air-loss" && e.name != "channel-crosstalk" &&
-                 e.name != "sensor-nonlinearity";
+          return e.name != "second-polarization" && e.name != "air-loss" && e.id() != "sensor-nonlinearity@far";
         });
+        for (auto& e : all)  // a scan over detunings is what takes long
+          std::erase_if(e.starts, [](const auto& start) { return start.size() == 2 && std::abs(start[0] + 1.2e-3) > 2e-4; });
         return all;
       });
   REQUIRE_MESSAGE(d, d.error());

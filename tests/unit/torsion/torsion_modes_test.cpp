@@ -85,3 +85,13 @@ TEST_CASE("torsion modes: as many are summed as are seen, however low the string
     }
   }
 }
+
+TEST_CASE("torsion modes: each convention has one other way about in either respect") {
+  using enum rosin::torsion_damping;
+  static_assert(rosin::otherwise_shared(constant_q) == viscous_modes && rosin::otherwise_shared(causal_modes) == causal_q);
+  static_assert(rosin::otherwise_dispersed(constant_q) == causal_q && rosin::otherwise_dispersed(causal_modes) == viscous_modes);
+  for (const auto d : {constant_q, viscous_modes, causal_q, causal_modes}) {
+    CHECK(rosin::otherwise_shared(rosin::otherwise_shared(d)) == d);
+    CHECK(rosin::torsion_convention(rosin::in_modes(d), rosin::is_causal(d)) == d);
+  }
+}
