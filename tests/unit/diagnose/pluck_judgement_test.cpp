@@ -8,7 +8,8 @@
 
 #include <doctest/doctest.h>
 
-TEST_CASE("pluck judgement: a pluck set aside is left at the noise by the right model, not by a wrong one of as many parameters") {
+TEST_CASE(
+    "pluck judgement: a pluck set aside is left at the noise by the right model, not by a wrong one of as many parameters") {
   constexpr double slow = 40e-6;
   const std::vector takes{test::modal_pluck(1, 1, slow), test::modal_pluck(0.5, 2, slow)}, held{test::modal_pluck(0.75, 3, slow)};
   const auto d = rosin::diagnose_plucks(
