@@ -134,13 +134,15 @@ double stick_excess(const rosin::contact_findings& f) {
   return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor));
 }
 
-/// Whether what no name was found for is as little as noise and imperfect models leave; else what shows it is what d is judged
-/// by.
+/// Whether what no name was found for is as little as noise and imperfect models leave, of string and sensors as well where
+/// something was found there; else what shows it is what d is judged by.
 bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found, rig_diagnosis& d) {
-  constexpr double much = 5, least = 0.06;
-  const auto apart = std::find_if(strokes.begin(), strokes.end(),
-                                  [&](const auto& s) { return s.delta > std::max(least, much * parting_by_noise(s)); });
-  const std::string statistic = rosin::beyond_doubt(found);
+  constexpr double much = 5, least = 0.06, beside_others = 2.5;
+  const double allowance = d.missing.empty() ? 1 : beside_others;
+  const auto apart = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) {
+    return s.delta > std::max(allowance * least, much * parting_by_noise(s));
+  });
+  const std::string statistic = rosin::beyond_doubt(found, allowance);
   if (apart != strokes.end())
     d.metric = "force-consistency", d.take = apart->name, d.before = apart->delta, d.after = d.before,
     d.noise_floor = parting_by_noise(*apart);
@@ -269,10 +271,13 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   }
   const bool named = d.missing.size() > others;
   if (!named && others == 0 && !found.as_declared) judge_by(found.hypotheses.front().statistic, found, d);
-  const bool rests = named || others > 0 || (found.as_declared && is_at_rest(strokes, found, d));
+  const bool humming =  // what is left of a hum moves the string by more than noise
+      std::any_of(d.missing.begin(), d.missing.end(), [](const missing_effect& m) { return m.effect == "mains-hum"; });
+  const bool rests = named || humming || (found.as_declared ? is_at_rest(strokes, found, d) : others > 0);
   if (!rests && d.metric != "force-consistency")
     d.contact = picture_of(traces_of(d.metric, found), d.metric, periods_in_picture * period_of(strokes)), first = d.metric;
-  if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
+  if (!rests) d.kind.clear(), d.channel.clear(), d.echo.reset(), d.band_Hz.reset();  // of the plucks, which are explained
+  if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0 || !rests);
   if (!named) return rests;
   if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());

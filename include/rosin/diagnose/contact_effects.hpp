@@ -22,6 +22,7 @@
 namespace rosin {
 
 struct contact_findings {
+  static constexpr double least_needed = 40;  ///< to gain, in nats, where noise is all that speaks against an effect
   /// best first: those that stand, then by gain, those without determined parameters last
   std::vector<contact_hypothesis> hypotheses;
   double stick_fluctuation = 0,
@@ -38,6 +39,7 @@ struct contact_findings {
 
   /// What an effect has to gain, in nats, so that it counts.
   [[nodiscard]] double needed(const contact_hypothesis& h) const {
+    if (h.peculiar) return std::min(threshold, least_needed);
     return h.effect.find("ripple") != std::string::npos || h.statistic == "friction-residual" ? tone_threshold : threshold;
   }
   /// Clearly there, in all takes and in takes predicted from the others.
@@ -47,11 +49,11 @@ struct contact_findings {
 };
 
 /// The statistic that shows several times what noise and imperfect models leave, whether any effect gains or not; empty: none
-/// does.
-[[nodiscard]] inline std::string beyond_doubt(const contact_findings& f) {
+/// does. `allowance`: so many times more.
+[[nodiscard]] inline std::string beyond_doubt(const contact_findings& f, double allowance = 1) {
   constexpr double much_sticking = 1.8, much_slipping = 5;
-  if (f.stick_fluctuation > much_sticking * f.stick_floor) return "stick-fluctuation";
-  return f.slips_resolved && f.friction_residual > much_slipping * f.friction_floor ? "friction-residual" : "";
+  if (f.stick_fluctuation > allowance * much_sticking * f.stick_floor) return "stick-fluctuation";
+  return f.slips_resolved && f.friction_residual > allowance * much_slipping * f.friction_floor ? "friction-residual" : "";
 }
 
 namespace detail {
@@ -170,7 +172,7 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
     if (auto width = width_hypothesis(sticks, takes)) out.hypotheses.push_back(*std::move(width));
   detail::add_stick_hypotheses(sticks, takes, out);
   detail::add_slip_hypotheses(sticks, takes, out);
-  out.threshold = std::max(40.0, 0.035 * out.independent);
+  out.threshold = std::max(contact_findings::least_needed, 0.035 * out.independent);
   out.tone_threshold = std::max(30.0, 0.01 * out.independent);
   std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(),
                    [](const auto& a, const auto& b) { return a.decided != b.decided ? a.decided : a.gain > b.gain; });

@@ -172,6 +172,43 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   return h;
 }
 
+namespace detail {
+
+/// Marks the rows of one part at which the others tell of a law's spline: none beyond what they hold, and none that keep it smooth.
+[[nodiscard]] inline std::vector<char> told_by_others(const std::vector<stick_rows>& parts, std::size_t which) {
+  constexpr double few = 5, hardly = 0.1;  // samples under a piece of the spline; a row's share in pieces with no more
+  Eigen::VectorXd seen = Eigen::VectorXd::Zero(parts[which].shared.cols());
+  for (std::size_t t = 0; t < parts.size(); ++t)
+    for (Eigen::Index i = 0; t != which && i < parts[t].shared.rows(); ++i)
+      if (parts[t].shared.row(i).sum() > 0.5) seen += parts[t].shared.row(i).transpose();
+  std::vector<char> told;
+  for (Eigen::Index i = 0; i < parts[which].shared.rows(); ++i) {
+    const auto row = parts[which].shared.row(i).transpose().array();
+    told.push_back(row.sum() > 0.5 && (seen.array() < few).select(row, 0.0).sum() < hardly ? 1 : 0);
+  }
+  return told;
+}
+
+/// By how many nats one law predicts each take better than another, from the other takes, where these tell of either.
+[[nodiscard]] inline double predicts_better(const stick_design& law, const stick_design& than, double floor) {
+  const auto mine = at_least_two(law.rows), other = at_least_two(than.rows);
+  const auto none = [](const std::vector<stick_rows>& parts) {
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(parts.front().shared.cols());
+    return stick_prior{zero, zero};
+  };
+  double nats = 0;
+  for (std::size_t t = 0; t < mine.size(); ++t) {
+    std::vector<char> told = told_by_others(mine, t);
+    const std::vector<char> as_well = told_by_others(other, t);
+    for (std::size_t i = 0; i < told.size(); ++i) told[i] = told[i] && as_well[i] ? 1 : 0;
+    if (std::count(told.begin(), told.end(), 1) > 100)
+      nats += predict_part(mine, t, floor, none(mine), told) - predict_part(other, t, floor, none(other), told);
+  }
+  return nats;
+}
+
+}  // namespace detail
+
 /// The other law than the declared one.
 [[nodiscard]] inline contact_hypothesis law_hypothesis(const slip_bench& bench) {
   const bool thermal = bench.declared().law != contact_law::thermal;
@@ -186,6 +223,8 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   }
   const law_fit other = bench.fit(thermal);
   detail::settle_hypothesis(bench, other.fit, h);
+  h.held_out_density = detail::predicts_better(other.design, bench.declared().design, bench.floor());
+  h.held_out_gain = h.share * h.held_out_density;
   h.decided =
       other.heat_memory || (other.rates.exchange_1_m < 1.1e4 && other.rates.conduction_1_s < 4.5e3 && other.rates.renewal < 9e3);
   if (thermal && !other.heat_memory)

@@ -180,11 +180,11 @@ private:
     if (!usable()) return;
     use_damping(torsion_damping::constant_q);
     if (!model_.torsion) return;
-    for (const auto other : {otherwise_shared, otherwise_dispersed}) {
+    for (const auto other : {torsion_damping::viscous_modes, torsion_damping::causal_q, torsion_damping::causal_modes}) {
       const torsion_damping damping = damping_;
       const stick_design design = declared_;
       const design_fit fit = fit_;
-      use_damping(other(damping));
+      use_damping(other);
       if (!(fit_.density > fit.density)) damping_ = damping, declared_ = design, fit_ = fit;
     }
   }

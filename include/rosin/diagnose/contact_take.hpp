@@ -91,6 +91,7 @@ struct contact_hypothesis {
   double width_s = 0;       ///< travel time over the width, where that is the effect
   std::string statistic{};  ///< "stick-fluctuation" or "friction-residual"
   bool decided = true;      ///< the parameters are determined
+  bool peculiar = false;    ///< imperfect models of a contact as declared do not look like it
   std::vector<contact_trace> before{}, after{};  ///< where that is not what the findings show of the models with and without it
 
   /// Gain less half a logarithm of the independent samples for each parameter (Schwarz).

@@ -275,15 +275,17 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
 }  // namespace detail
 
 /// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and stays out if the
-/// evidence is higher without it; what best takes its place is kept if the evidence of the whole rises by more than `nats`.
-[[nodiscard]] inline scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats,
-                                         std::array<double, 2> noise) {
+/// evidence is higher without it, or if it is not worth it beside the others: is_worth(fit without it, fit, which). What best takes
+/// its place is kept if the evidence of the whole rises by more than `nats`.
+template <typename Worth>
+[[nodiscard]] scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats,
+                                  std::array<double, 2> noise, Worth&& is_worth) {
   std::size_t count = fit.effects.size();
   for (std::size_t tried = 0, k = 0; tried < count && count > 1; ++tried, k = (k + 1) % count) {
     scene_fit rest = detail::without(data, fit, k);
     rest = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true, data.compared()}}, noise);
     if (!(detail::cost_of(rest, noise) < 1e299)) continue;
-    if (detail::price_of(rest, noise) < detail::price_of(fit, noise)) {
+    if (detail::price_of(rest, noise) < detail::price_of(fit, noise) || !is_worth(rest, fit, k)) {
       fit = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true, freedom::all}}, noise);
       --count, tried = 0, k = 0;
       continue;

@@ -9,7 +9,7 @@
 //     worth          a further effect (any, where terminations are declared to move: these count as found) takes away at least
 //                    two thirds of what the model so far leaves beyond the noise, and that is at least a hundredth (in
 //                    amplitude) of what there was to explain: no model of a bead is exact either. Of less than that it takes
-//                    away nearly all, and gains 40. Two that are not worth it alone may be together, to a ninth.
+//                    away nearly all, and gains 300. Two that are not worth it alone may be together, to a ninth.
 //
 // Two effects found one after the other may stand in one another's place; each is then taken out and sought anew.
 //
@@ -65,7 +65,9 @@ public:
     const auto found = [&] { return static_cast<int>(now_.effects.size()); };
     while (found() < most_effects && add_one(found())) {
     }
-    d_.best = exchanged(d_.data, now_, all_, 1, noise_);
+    d_.best = exchanged(d_.data, now_, all_, 1, noise_, [&](const scene_fit& rest, const scene_fit& fit, std::size_t which) {
+      return is_worth(compare(rest, fit), fit.effects[which], 1);
+    });
     if (d_.found_gain.size() > d_.best.effects.size()) d_.found_gain.resize(d_.best.effects.size());
     if (d_.best.effects.empty()) d_.best = d_.base;
     rank_all();
@@ -95,7 +97,7 @@ private:
   /// these leave most of them. What a declared end is off by is no other mode of it.
   [[nodiscard]] bool is_worth(const comparison& c, const pluck_effect& e, int round) const {
     if (round == 0 && !d_.data.layout.has_ends()) return true;
-    constexpr double beyond_doubt = 40;
+    constexpr double beyond_doubt = 300;
     const bool much = c.was > 1e-4 * all_there_was_,
                at_known_end = e.at_end && e.place >= 0 && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
     return c.left < c.was / 3 && (much || (!at_known_end && c.left < c.was / 30 && c.gain > beyond_doubt));
@@ -174,7 +176,8 @@ private:
     // Linear parameters of which there are many (hum) gain half a unit each from noise alone.
     const double chance = std::max(0, static_cast<int>(tried.effects.back().parameters.size()) - 3);
     if (!(c.gain > 14 + 0.5 * chance + 2 * std::sqrt(chance))) return false;
-    if (!worth) return round == 1 && add_with_another(fits, c);
+    constexpr double half_way = 2.0 / 3;  // of two that leave a ninth the better leaves no more by itself
+    if (!worth) return round == 1 && c.left < half_way * c.was && add_with_another(fits, c);
     accept(fits, c);
     return round == 0 || now_.quality.inflation() != 1.0;
   }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What a fit of plucks leaves: where it shows, how well takes that were not fitted are predicted (of them only the instant of
-// release and the strength are free, and where no other was made at that place the place, within what a notebook tells of it),
-// and whether what rings is noisier than what was held.
+// release and the strength are free, and where no other was made at that place the place, within what a notebook tells of it and
+// of the nearest other), and whether what rings is noisier than what was held.
 //
 #pragma once
 
@@ -123,7 +123,8 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
                         {1e-3, 1e-3});
   };
   fit_with(most);
-  if (!(std::abs(out.fit.value[out.data.layout.position(0)] - place) <= data.guess.position_tolerance))
+  constexpr double both = 2;  // either place may be off by the tolerance
+  if (!(std::abs(out.fit.value[out.data.layout.position(0)] - place) <= both * data.guess.position_tolerance))
     fit_with(freedom::release_only);
   return out;
 }

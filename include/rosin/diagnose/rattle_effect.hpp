@@ -186,13 +186,14 @@ namespace detail {
     const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
     const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
     double impedance_Ns_m) {
+  constexpr int beside_it = 1;  // effects that the softer ones show
   std::vector<pluck_take> all = takes;
   all.insert(all.end(), held.begin(), held.end());
   std::stable_sort(all.begin(), all.end(), [](const pluck_take& a, const pluck_take& b) { return a.strength_N > b.strength_N; });
   for (std::ptrdiff_t strong = 2; strong < static_cast<std::ptrdiff_t>(all.size()); ++strong) {
     std::vector<pluck_take> soft(all.begin() + strong, all.end()), kept;
     if (soft.size() > 1) kept.push_back(std::move(soft.back())), soft.pop_back();
-    auto others = diagnose_plucks(soft, kept, guess, options, catalogue_for);
+    auto others = diagnose_plucks(soft, kept, guess, options, catalogue_for, beside_it);
     if (!others || !others->explained) continue;
     auto odd = detail::against(*std::move(others), all.front(), guess, options);
     if (!odd) continue;

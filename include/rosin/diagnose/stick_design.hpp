@@ -48,14 +48,24 @@ namespace detail {
           {r.target.tail(rest), r.shared.bottomRows(rest), r.own.bottomRows(rest), {middle, r.sample.end()}}};
 }
 
+/// The rows that are marked.
+[[nodiscard]] inline stick_rows rows_of(const stick_rows& all, const std::vector<char>& marked) {
+  std::vector<Eigen::Index> kept;
+  stick_rows out;
+  for (std::size_t i = 0; i < marked.size(); ++i)
+    if (marked[i]) kept.push_back(static_cast<Eigen::Index>(i)), out.sample.push_back(all.sample[i]);
+  out.target = all.target(kept), out.shared = all.shared(kept, Eigen::all), out.own = all.own(kept, Eigen::all);
+  return out;
+}
+
 /// Log density of one part under the shared coefficients of the others; its own coefficients and the size of what is left are its
-/// own.
+/// own. `marked`: the rows that count; empty: all.
 [[nodiscard]] inline double predict_part(const std::vector<stick_rows>& parts, std::size_t which, double floor,
-                                         const stick_prior& prior) {
+                                         const stick_prior& prior, const std::vector<char>& marked = {}) {
   std::vector<stick_rows> others;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (i != which && parts[i].target.size() > parts[i].own.cols() + parts[i].shared.cols()) others.push_back(parts[i]);
-  stick_rows left = parts[which];
+  stick_rows left = marked.empty() ? parts[which] : rows_of(parts[which], marked);
   if (others.empty() || left.target.size() <= left.own.cols()) return 0;
   const auto trained = stick_regression(others, floor, prior);
   left.target -= left.shared * trained.shared;

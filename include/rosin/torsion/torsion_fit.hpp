@@ -263,10 +263,13 @@ inline void judge_torsion(const torsion_state& best, const std::vector<stick_rec
   best = detail::settle(records, best, 3);
   other = detail::settle(records, other, 4);
   if (detail::score(other) > detail::score(best)) best = other;
-  other = best;
-  other.damping = otherwise_dispersed(best.damping);
-  other = detail::settle(records, other, 3);
-  if (detail::score(other) > detail::score(best)) best = other;
+  for (const auto another : {otherwise_dispersed, otherwise_shared}) {
+    if (another == otherwise_shared && !is_causal(best.damping)) break;  // tried already
+    other = best;
+    other.damping = another(best.damping);
+    other = detail::settle(records, other, 3);
+    if (detail::score(other) > detail::score(best)) best = other;
+  }
   if (!best.sane) return failure{"torsion: the fit ran away: no torsion makes the surface steady while it sticks"};
   torsion_fit_result result{.value = best.at, .damping = best.damping};
   result.rest = {

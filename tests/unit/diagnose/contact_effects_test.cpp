@@ -39,6 +39,19 @@ TEST_CASE("contact effects: torsion that the catalogue does not know shows all t
   CHECK(found.hypotheses.empty());
   CHECK(found.as_declared);
   CHECK(rosin::beyond_doubt(found) == "stick-fluctuation");
+  CHECK(rosin::beyond_doubt(found, 1e3).empty());
+}
+
+TEST_CASE("contact effects: what no imperfect model looks like needs no more in a longer record") {
+  rosin::contact_findings found;
+  found.threshold = 200;
+  rosin::contact_hypothesis rod{.effect = "rod-resonance"};
+  rod.gain = rod.held_out_gain = 110;
+  CHECK_FALSE(found.stands(rod));
+  rod.peculiar = true;
+  CHECK(found.stands(rod));
+  rod.gain = rod.held_out_gain = 35;
+  CHECK_FALSE(found.stands(rod));
 }
 
 TEST_CASE("contact effects: takes that tell nothing are left out, with a reason") {

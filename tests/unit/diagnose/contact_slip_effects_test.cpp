@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "contact_rigs.hpp"
+#include "slips_by_hand.hpp"
 
 TEST_CASE("contact slip effects: a normal force that is not steady shows in slips alone") {
   auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
@@ -121,4 +122,34 @@ TEST_CASE("contact slip effects: a velocity curve as declared gains by nothing")
   const auto ripple = rosin::normal_ripple_hypothesis(bench);
   CHECK((!ripple.decided || ripple.gain < 20));
   CHECK(rosin::law_hypothesis(bench).gain < 20);
+}
+
+TEST_CASE("contact slip effects: a law is asked to foretell a stroke only as far as the other one tells of it") {
+  // heat that fades by itself, friction that falls with it; the stronger stroke gets far hotter
+  double heat = 0;
+  const auto fading = [&heat](double v, double normal_N) {
+    const double mu = 0.4 + 0.5 / (1 + std::pow(heat / 0.2, 4));
+    heat = heat * std::exp(-(400 + 2500 * v) / rosin_test::slip_rate_Hz) + v * normal_N * mu * 1e3 / rosin_test::slip_rate_Hz;
+    return mu;
+  };
+  std::vector<rosin::slip_record> records;
+  for (const double strength : {1.0, 1.6}) heat = 0, records.push_back(rosin_test::slips_by_hand(strength, 20000, 0.4, fading));
+  const auto curve = rosin::fit_velocity_curve(records, 1e-4), thermal = rosin::fit_thermal(records, 1e-4);
+  const auto told = rosin::detail::told_by_others(thermal.design.rows, 1);
+  const auto count = std::count(told.begin(), told.end(), 1);
+  CHECK(count > 100);
+  CHECK(count < static_cast<std::ptrdiff_t>(told.size()) / 2);
+  CHECK(rosin::detail::predicts_better(thermal.design, curve.design, 1e-4) > 500);
+  CHECK(rosin::detail::predicts_better(curve.design, curve.design, 1e-4) == 0);
+}
+
+TEST_CASE("contact slip effects: a row counts where the other strokes have samples under the same pieces of the spline") {
+  rosin::stick_rows seen, asked;
+  seen.shared = Eigen::MatrixXd::Zero(30, 3), asked.shared = Eigen::MatrixXd::Zero(4, 3);
+  seen.shared.col(0).head(20).setOnes(), seen.shared.col(1).segment(20, 8).setOnes(), seen.shared.col(2).tail(2).setOnes();
+  asked.shared.row(0) << 0.5, 0.5, 0;
+  asked.shared.row(1) << 0, 0.95, 0.05;
+  asked.shared.row(2) << 0, 0.7, 0.3;     // two samples are too few
+  asked.shared.row(3) << 0.1, -0.2, 0.1;  // keeps the spline smooth
+  CHECK(rosin::detail::told_by_others({seen, asked}, 1) == std::vector<char>{1, 1, 0, 0});
 }

@@ -32,6 +32,7 @@ TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q an
   CHECK(value(rod, "frequency_Hz") == doctest::Approx(1800).epsilon(0.01));
   CHECK(value(rod, "q") == doctest::Approx(14).epsilon(0.12));
   CHECK(value(rod, "mass_kg") == doctest::Approx(0.003).epsilon(0.06));
+  CHECK(rod.peculiar);
   for (const auto& other :
        {rosin::torsion_hypothesis(bench), rosin::bristle_hypothesis(bench), rosin::creep_hypothesis(bench, {a.take(), b.take()})})
     CHECK(other.density < 0.3 * rod.density);
@@ -80,6 +81,8 @@ TEST_CASE("contact stick effects: a contact as declared gains by nothing") {
   rosin::stick_bench bench(takes, contact_rigs::declared());
   REQUIRE(bench.usable());
   for (const auto& h : {rosin::torsion_hypothesis(bench), rosin::rod_hypothesis(bench), rosin::bristle_hypothesis(bench),
-                        rosin::creep_hypothesis(bench, takes)})
+                        rosin::creep_hypothesis(bench, takes)}) {
     CHECK((!h.decided || h.gain < 40));
+    CHECK_FALSE(h.peculiar);
+  }
 }

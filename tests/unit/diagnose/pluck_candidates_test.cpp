@@ -59,8 +59,32 @@ TEST_CASE("an effect that a later one has made needless is given up") {
   for (std::size_t t = 0; t < 2; ++t)
     data.takes.push_back(test::scene_pluck(layout, {late}, test::values_of(layout, {2e-6}), t, noise[0], 3 + t));
   const auto both = rosin::fit_scene(data, {cross, late}, test::values_of(layout, {1e-5, 2e-6}), {{}}, noise);
-  const auto kept = rosin::exchanged(data, both, {late, cross}, 1, noise);
+  const auto any = [](const rosin::scene_fit&, const rosin::scene_fit&, std::size_t) { return true; };
+  const auto kept = rosin::exchanged(data, both, {late, cross}, 1, noise, any);
   REQUIRE(kept.effects.size() == 1);
   CHECK(kept.effects[0].id() == "channel-skew");
   CHECK(kept.value[layout.size()] == doctest::Approx(2e-6).epsilon(0.01));
+}
+
+TEST_CASE("an effect that is there, but not worth a name beside a later one, is given up") {
+  const rosin::string_facts facts{
+      .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::pluck_options options{.internal_loss = false};
+  const auto layout = test::two_plucks(options);
+  const rosin::pluck_effect late = rosin::skew_effect(facts), cross = rosin::crosstalk_effect(facts);
+  constexpr std::array<double, 2> noise{3e-4, 3e-4};
+  rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
+  for (std::size_t t = 0; t < 2; ++t)
+    data.takes.push_back(test::scene_pluck(layout, {cross, late}, test::values_of(layout, {1e-3, 2e-6}), t, noise[0], 3 + t));
+  const auto both = rosin::fit_scene(data, {cross, late}, test::values_of(layout, {1e-3, 2e-6}), {{}}, noise);
+  double share_of_cross = 0;
+  const auto worth = [&](const rosin::scene_fit& rest, const rosin::scene_fit& fit, std::size_t which) {
+    if (fit.effects[which].id() != "cross-talk") return true;
+    share_of_cross = rest.quality.power[0] / fit.quality.power[0] - 1;
+    return false;
+  };
+  const auto kept = rosin::exchanged(data, both, {late}, 1, noise, worth);
+  CHECK(share_of_cross > 0.05);
+  REQUIRE(kept.effects.size() == 1);
+  CHECK(kept.effects[0].id() == "channel-skew");
 }

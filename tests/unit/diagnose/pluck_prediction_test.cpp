@@ -68,6 +68,7 @@ TEST_CASE(
   };
   CHECK(left_over_floor(0.42) == doctest::Approx(1).epsilon(0.1));  // 0.3 of the others stands for 0.301
   CHECK(left_over_floor(0.4203) == doctest::Approx(1).epsilon(0.1));
+  CHECK(left_over_floor(0.413) == doctest::Approx(1).epsilon(0.1));  // both a little off, to opposite sides
   CHECK(left_over_floor(0.44) > 20);
   p.data.guess.position_tolerance = 0;
   CHECK(left_over_floor(0.4203) > 1.5);
