@@ -4,6 +4,7 @@
 // own up to?
 //
 #include "diagnose_parts.hpp"
+#include "digits.hpp"
 
 #include <rosin/diagnose/contact_cycle.hpp>
 
@@ -19,6 +20,7 @@ constexpr double further_tone_share =
     0.05;  ///< of what was gained so far on the same statistic: no model of a contact is exact either,
 constexpr double further_give_share = 0.2;     ///< and what one model of its give leaves another one takes up
 constexpr double further_other_share = 0.005;  ///< of what was gained on another statistic
+constexpr double beside_others = 2.5;          ///< so many times more may be left where string and sensors are imperfect, too
 constexpr double left_of_sticking =
     0.5;  ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
 
@@ -29,6 +31,11 @@ missing_effect described(const rosin::contact_hypothesis& h, double probability)
   for (const auto& p : h.parameters) m.parameters.push_back({p.name, p.value, p.sd});
   m.statement = statement_of(m);
   return m;
+}
+
+/// What is left of a hum moves the string by more than noise.
+bool hums(const rig_diagnosis& d) {
+  return std::any_of(d.missing.begin(), d.missing.end(), [](const missing_effect& m) { return m.effect == "mains-hum"; });
 }
 
 /// A ripple at a multiple of a mains hum that was found is what is left of the hum.
@@ -67,12 +74,21 @@ double floor_in(const std::string& data, const rosin::contact_findings& found) {
   return data == "friction-residual" ? found.friction_floor : found.stick_floor;
 }
 
-/// Before and floor are those of what the contact is judged by.
-void judge_by(const std::string& statistic, const rosin::contact_findings& found, rig_diagnosis& d) {
-  d.metric = data_of(statistic);
-  d.before = left_in(d.metric, found);
-  d.noise_floor = floor_in(d.metric, found);
-  d.after = d.before;
+/// What shows that a contact is not as the model has it.
+struct open_contact {
+  std::string statistic, take;  ///< the take is empty where all of them show it
+  double size = 0, floor = 0;
+};
+
+open_contact shown_by(const std::string& statistic, const rosin::contact_findings& found) {
+  const std::string data = data_of(statistic);
+  return {data, {}, left_in(data, found), floor_in(data, found)};
+}
+
+/// What the diagnosis is judged by where nothing else is wrong with the rig.
+void judge_by(const open_contact& open, rig_diagnosis& d) {
+  d.metric = open.statistic, d.before = open.size, d.after = open.size, d.noise_floor = open.floor;
+  if (!open.take.empty()) d.take = open.take;
 }
 
 /// What was gained so far, in nats, by the data that it was gained on.
@@ -123,7 +139,7 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
     if (std::abs(found.hypotheses[i].gain - best.gain) < 5) m.indistinguishable_from.push_back(found.hypotheses[i].effect);
   d.missing.push_back(m);
   if (d.missing.size() > 1) return true;
-  judge_by(best.statistic, found, d);
+  judge_by(shown_by(best.statistic, found), d);
   d.after = best.fluctuation;
   if (best.noise > 0) d.noise_floor = best.noise;
   return true;
@@ -134,20 +150,25 @@ double stick_excess(const rosin::contact_findings& f) {
   return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor));
 }
 
-/// Whether what no name was found for is as little as noise and imperfect models leave, of string and sensors as well where
-/// something was found there; else what shows it is what d is judged by.
-bool is_at_rest(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found, rig_diagnosis& d) {
-  constexpr double much = 5, least = 0.06, beside_others = 2.5;
-  const double allowance = d.missing.empty() ? 1 : beside_others;
-  const auto apart = std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) {
-    return s.delta > std::max(allowance * least, much * parting_by_noise(s));
-  });
+/// What no name was found for, where it is more than noise and imperfect models leave.
+/// `allowance`: so many times more is nothing yet.
+std::optional<open_contact> left_open(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found,
+                                      double allowance) {
+  constexpr double much = 5, least = 0.06;
+  for (const auto& s : strokes)
+    if (s.delta > std::max(allowance * least, much * parting_by_noise(s)))
+      return open_contact{"force-consistency", s.name, s.delta, parting_by_noise(s)};
   const std::string statistic = rosin::beyond_doubt(found, allowance);
-  if (apart != strokes.end())
-    d.metric = "force-consistency", d.take = apart->name, d.before = apart->delta, d.after = d.before,
-    d.noise_floor = parting_by_noise(*apart);
-  else if (!statistic.empty()) judge_by(statistic, found, d);
-  return apart == strokes.end() && statistic.empty();
+  if (statistic.empty()) return std::nullopt;
+  return shown_by(statistic, found);
+}
+
+std::string in_words(const open_contact& open) {
+  const std::string size = in_digits(open.size, "%.3g"), floor = ", where " + in_digits(open.floor, "%.2g") + " is unsure.";
+  if (open.statistic == "force-consistency") return "In " + open.take + " the force's two versions part by " + size + floor;
+  if (open.statistic == "friction-residual")
+    return "Friction under the bow is off its law by " + size + " of the normal force" + floor;
+  return "What sticks to the rod moves by " + size + " of its speed" + floor;
 }
 
 /// The stretch of so many seconds in which most is left, summed over its samples; a few that stand out far count as four times
@@ -270,18 +291,20 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
       d.after = left_in(d.metric, found), d.noise_floor = floor_in(d.metric, found);
   }
   const bool named = d.missing.size() > others;
-  if (!named && others == 0 && !found.as_declared) judge_by(found.hypotheses.front().statistic, found, d);
-  const bool humming =  // what is left of a hum moves the string by more than noise
-      std::any_of(d.missing.begin(), d.missing.end(), [](const missing_effect& m) { return m.effect == "mains-hum"; });
-  const bool rests = named || humming || (found.as_declared ? is_at_rest(strokes, found, d) : others > 0);
-  if (!rests && d.metric != "force-consistency")
-    d.contact = picture_of(traces_of(d.metric, found), d.metric, periods_in_picture * period_of(strokes)), first = d.metric;
-  if (!rests) d.kind.clear(), d.channel.clear(), d.echo.reset(), d.band_Hz.reset();  // of the plucks, which are explained
-  if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0 || !rests);
-  if (!named) return rests;
+  std::optional<open_contact> open;
+  if (!named && !hums(d) && found.as_declared) open = left_open(strokes, found, others > 0 ? beside_others : 1);
+  if (!named && others == 0 && !found.as_declared) open = shown_by(found.hypotheses.front().statistic, found);
+  if (open && others == 0) judge_by(*open, d);
+  if (open && others > 0) d.left_in_strokes = in_words(*open);
+  if (open && open->statistic != "force-consistency")
+    d.contact = picture_of(traces_of(open->statistic, found), open->statistic, periods_in_picture * period_of(strokes)),
+    first = open->statistic;
+  if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
+  if (!named) return !open;
   if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
+  if (others > 0) d.left_in_strokes = in_words(shown_by("stick-fluctuation", found));
   d.contact->after.clear();
   return false;
 }

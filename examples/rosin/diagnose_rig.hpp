@@ -116,6 +116,7 @@ struct rig_diagnosis {
   /// what is left of an unexplained mismatch: "on the string at 0.62 +- 0.01 of its length", "at the near end", "in the far
   /// channel"
   std::string acts;
+  std::string left_in_strokes;  ///< a sentence: what these show beyond all that was found
   double residual_over_noise = 0;
   std::string kind;         ///< "sensor-or-string", "common-mode", "contact"; empty where that cannot be told
   std::optional<int> echo;  ///< the last wave of the pluck to arrive before time_s; 1: the direct one

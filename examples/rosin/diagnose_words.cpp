@@ -166,6 +166,7 @@ std::string sentence(const rig_diagnosis& d) {
   std::string out;
   for (const auto& m : d.missing) out += (out.empty() ? "" : " ") + m.statement;
   if (d.verdict == "explained") return out;
+  if (!d.left_in_strokes.empty()) return out + " That does not account for all of it. " + d.left_in_strokes;
   const std::string where = d.take.empty() ? ""
                                            : " It shows in " + d.take + (d.channel.empty() ? "" : ", channel " + d.channel) +
                                                  (d.acts.empty() ? "." : "; both ends agree that it acts " + d.acts + ".");

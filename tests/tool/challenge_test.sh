@@ -9,6 +9,15 @@ expect 0 validate a/rigs/challenge-700001/rig.toml
 expect 0 challenge --out a --seed 7 --count 2 --effect channel-skew --only-make --shard 2/2
 expect 0 check a/rigs/challenge-700001
 
+# What strokes show beyond what was found in the plucks is said: here torsion that nobody declares, and no effect of a contact in the catalogue.
+sed 's/, "torsion"//; /^\[torsion\]/,/^$/d' a/rigs/challenge-700001/rig.toml >a/rigs/challenge-700001/untwisted.toml
+no_contact=()
+for effect in torsion rod-resonance elasto-plastic-friction creep speed-ripple normal-force-ripple thermal-friction finite-contact-width; do
+  no_contact+=(--without "$effect")
+done
+expect 0 diagnose a/rigs/challenge-700001/untwisted.toml "${no_contact[@]}"
+says "unexplained" "channel comes" "That does not account for all of it. What sticks to the rod moves by"
+
 # Samples that a recorder loses are missing from one pluck, and from both its channels.
 expect 0 challenge --out lost --seed 7 --count 1 --effect dropouts --only-make
 missing=$(perl -MJSON::PP -e 'local $/; print decode_json(<STDIN>)->{effects}[0]{parameters}{samples}' <lost/truth/challenge-700000.json)
