@@ -274,12 +274,10 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
 
 }  // namespace detail
 
-/// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and stays out if the
-/// evidence is higher without it, or if it is not worth it beside the others: is_worth(fit without it, fit, which). What best takes
-/// its place is kept if the evidence of the whole rises by more than `nats`.
-template <typename Worth>
+/// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and stays out where
+/// the evidence is higher or it is not is_worth(fit without it, fit, which); what best takes its place stays if it gains `nats`.
 [[nodiscard]] scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats,
-                                  std::array<double, 2> noise, Worth&& is_worth) {
+                                  std::array<double, 2> noise, const auto& is_worth) {
   std::size_t count = fit.effects.size();
   for (std::size_t tried = 0, k = 0; tried < count && count > 1; ++tried, k = (k + 1) % count) {
     scene_fit rest = detail::without(data, fit, k);

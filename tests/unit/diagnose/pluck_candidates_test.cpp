@@ -79,7 +79,7 @@ TEST_CASE("an effect that is there, but not worth a name beside a later one, is 
   const auto both = rosin::fit_scene(data, {cross, late}, test::values_of(layout, {1e-3, 2e-6}), {{}}, noise);
   double share_of_cross = 0;
   const auto worth = [&](const rosin::scene_fit& rest, const rosin::scene_fit& fit, std::size_t which) {
-    if (fit.effects[which].id() != "cross-talk") return true;
+    if (fit.effects[which].id() != "channel-crosstalk") return true;
     share_of_cross = rest.quality.power[0] / fit.quality.power[0] - 1;
     return false;
   };
