@@ -124,7 +124,8 @@ TEST_CASE("contact slip effects: a velocity curve as declared gains by nothing")
   CHECK(rosin::law_hypothesis(bench).gain < 20);
 }
 
-TEST_CASE("contact slip effects: a law is asked to foretell a stroke only as far as the other one tells of it") {
+TEST_CASE("contact slip effects: a law is asked to foretell a stroke only as far as the other one tells of it" *
+          doctest::test_suite("long")) {
   // heat that fades by itself, friction that falls with it; the stronger stroke gets far hotter
   double heat = 0;
   const auto fading = [&heat](double v, double normal_N) {
