@@ -4,7 +4,6 @@
 // own up to?
 //
 #include "diagnose_parts.hpp"
-#include "digits.hpp"
 
 #include <rosin/diagnose/contact_cycle.hpp>
 
@@ -20,7 +19,6 @@ constexpr double further_tone_share =
     0.05;  ///< of what was gained so far on the same statistic: no model of a contact is exact either,
 constexpr double further_give_share = 0.2;     ///< and what one model of its give leaves another one takes up
 constexpr double further_other_share = 0.005;  ///< of what was gained on another statistic
-constexpr double beside_others = 2.5;          ///< so many times more may be left where string and sensors are imperfect, too
 constexpr double left_of_sticking =
     0.5;  ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
 
@@ -73,12 +71,6 @@ double left_in(const std::string& data, const rosin::contact_findings& found) {
 double floor_in(const std::string& data, const rosin::contact_findings& found) {
   return data == "friction-residual" ? found.friction_floor : found.stick_floor;
 }
-
-/// What shows that a contact is not as the model has it.
-struct open_contact {
-  std::string statistic, take;  ///< the take is empty where all of them show it
-  double size = 0, floor = 0;
-};
 
 open_contact shown_by(const std::string& statistic, const rosin::contact_findings& found) {
   const std::string data = data_of(statistic);
@@ -150,25 +142,21 @@ double stick_excess(const rosin::contact_findings& f) {
   return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor));
 }
 
-/// What no name was found for, where it is more than noise and imperfect models leave.
-/// `allowance`: so many times more is nothing yet.
+/// What no name was found for, where it is more than noise and imperfect models leave: of string and sensors as well, where
+/// something was found there.
 std::optional<open_contact> left_open(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found,
-                                      double allowance) {
-  constexpr double much = 5, least = 0.06;
+                                      const rig_diagnosis& d) {
+  constexpr double much = 5, least = 0.06, beside_others = 2.5;
+  const bool alone = d.missing.empty();
+  if (!found.as_declared && alone) return shown_by(found.hypotheses.front().statistic, found);
+  if (!found.as_declared || hums(d)) return std::nullopt;
+  const double allowance = alone ? 1 : beside_others;
   for (const auto& s : strokes)
     if (s.delta > std::max(allowance * least, much * parting_by_noise(s)))
       return open_contact{"force-consistency", s.name, s.delta, parting_by_noise(s)};
   const std::string statistic = rosin::beyond_doubt(found, allowance);
   if (statistic.empty()) return std::nullopt;
   return shown_by(statistic, found);
-}
-
-std::string in_words(const open_contact& open) {
-  const std::string size = in_digits(open.size, "%.3g"), floor = ", where " + in_digits(open.floor, "%.2g") + " is unsure.";
-  if (open.statistic == "force-consistency") return "In " + open.take + " the force's two versions part by " + size + floor;
-  if (open.statistic == "friction-residual")
-    return "Friction under the bow is off its law by " + size + " of the normal force" + floor;
-  return "What sticks to the rod moves by " + size + " of its speed" + floor;
 }
 
 /// The stretch of so many seconds in which most is left, summed over its samples; a few that stand out far count as four times
@@ -291,11 +279,9 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
       d.after = left_in(d.metric, found), d.noise_floor = floor_in(d.metric, found);
   }
   const bool named = d.missing.size() > others;
-  std::optional<open_contact> open;
-  if (!named && !hums(d) && found.as_declared) open = left_open(strokes, found, others > 0 ? beside_others : 1);
-  if (!named && others == 0 && !found.as_declared) open = shown_by(found.hypotheses.front().statistic, found);
+  const std::optional<open_contact> open = named ? std::nullopt : left_open(strokes, found, d);
   if (open && others == 0) judge_by(*open, d);
-  if (open && others > 0) d.left_in_strokes = in_words(*open);
+  if (open && others > 0) d.left_in_strokes = open;
   if (open && open->statistic != "force-consistency")
     d.contact = picture_of(traces_of(open->statistic, found), open->statistic, periods_in_picture * period_of(strokes)),
     first = open->statistic;
@@ -304,7 +290,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
-  if (others > 0) d.left_in_strokes = in_words(shown_by("stick-fluctuation", found));
+  if (others > 0) d.left_in_strokes = shown_by("stick-fluctuation", found);
   d.contact->after.clear();
   return false;
 }

@@ -89,6 +89,11 @@ json to_json(const rig_diagnosis& d, const provenance& from) {
                                                       {"class", d.kind.empty() ? json(nullptr) : json(d.kind)},
                                                       {"wave", d.echo ? json(*d.echo) : json(nullptr)},
                                                       {"maps", maps_of(d)}};
+  if (const auto& left = d.left_in_strokes)
+    out["mismatch"]["strokes"] = {{"metric", left->statistic},
+                                  {"take", left->take.empty() ? json(nullptr) : json(left->take)},
+                                  {"left", number(left->size)},
+                                  {"floor", number(left->floor)}};
   out["missing"] = json::array();
   for (const auto& m : d.missing) out["missing"].push_back(to_json(m));
   out["ranking"] = json::array();

@@ -354,7 +354,7 @@ void add_ranking(const rig_diagnosis& d, report_page& page) {
 }
 
 void add_limits(const rig_diagnosis& d, report_page& page) {
-  if (d.verdict == "unexplained" && d.left_in_strokes.empty())
+  if (d.verdict == "unexplained" && !d.left_in_strokes)
     page.notes.emplace_back(
         "What was found, if anything, does not bring the takes that were set aside down to the noise. The place of what is left "
         "stands above; nothing is named for it.");

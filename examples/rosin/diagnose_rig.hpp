@@ -100,6 +100,12 @@ struct contact_picture {
   double noise = 0;
 };
 
+/// What shows that a contact is not as the model has it.
+struct open_contact {
+  std::string statistic, take;  ///< a metric of the format; the take is empty where all of them show it
+  double size = 0, floor = 0;
+};
+
 struct rig_diagnosis {
   std::string title, verdict;
   std::vector<missing_effect> missing;
@@ -116,7 +122,7 @@ struct rig_diagnosis {
   /// what is left of an unexplained mismatch: "on the string at 0.62 +- 0.01 of its length", "at the near end", "in the far
   /// channel"
   std::string acts;
-  std::string left_in_strokes;  ///< a sentence: what these show beyond all that was found
+  std::optional<open_contact> left_in_strokes{};  ///< what these show beyond all that was found in the plucks
   double residual_over_noise = 0;
   std::string kind;         ///< "sensor-or-string", "common-mode", "contact"; empty where that cannot be told
   std::optional<int> echo;  ///< the last wave of the pluck to arrive before time_s; 1: the direct one

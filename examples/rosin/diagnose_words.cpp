@@ -161,12 +161,24 @@ std::string kind_in_words(const std::string& kind) {
   return "contact: plucks and both versions of the force are right, the motion under the bow is not as declared";
 }
 
+namespace {
+
+std::string in_words(const open_contact& open) {
+  const std::string size = in_digits(open.size, "%.3g"), floor = ", where " + in_digits(open.floor, "%.2g") + " is unsure.";
+  if (open.statistic == "force-consistency") return "In " + open.take + " the force's two versions part by " + size + floor;
+  if (open.statistic == "friction-residual")
+    return "Friction under the bow is off its law by " + size + " of the normal force" + floor;
+  return "What sticks to the rod moves by " + size + " of its speed" + floor;
+}
+
+}  // namespace
+
 std::string sentence(const rig_diagnosis& d) {
   if (d.verdict == "no-mismatch") return "Simulation and recordings agree to within the noise.";
   std::string out;
   for (const auto& m : d.missing) out += (out.empty() ? "" : " ") + m.statement;
   if (d.verdict == "explained") return out;
-  if (!d.left_in_strokes.empty()) return out + " That does not account for all of it. " + d.left_in_strokes;
+  if (d.left_in_strokes) return out + " That does not account for all of it. " + in_words(*d.left_in_strokes);
   const std::string where = d.take.empty() ? ""
                                            : " It shows in " + d.take + (d.channel.empty() ? "" : ", channel " + d.channel) +
                                                  (d.acts.empty() ? "." : "; both ends agree that it acts " + d.acts + ".");

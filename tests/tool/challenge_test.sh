@@ -15,8 +15,13 @@ no_contact=()
 for effect in torsion rod-resonance elasto-plastic-friction creep speed-ripple normal-force-ripple thermal-friction finite-contact-width; do
   no_contact+=(--without "$effect")
 done
-expect 0 diagnose a/rigs/challenge-700001/untwisted.toml "${no_contact[@]}"
+expect 0 diagnose a/rigs/challenge-700001/untwisted.toml "${no_contact[@]}" --json untwisted.json
 says "unexplained" "channel comes" "That does not account for all of it. What sticks to the rod moves by"
+perl -MJSON::PP -e '
+  local $/;
+  my $s = decode_json(<STDIN>)->{mismatch}{strokes};
+  die "no strokes\n" unless $s->{metric} eq "stick-fluctuation" && $s->{left} > 10 * $s->{floor} && $s->{floor} > 0' <untwisted.json
+expect 0 validate untwisted.json
 
 # Samples that a recorder loses are missing from one pluck, and from both its channels.
 expect 0 challenge --out lost --seed 7 --count 1 --effect dropouts --only-make
