@@ -1,35 +1,50 @@
 #!/usr/bin/env bash
-# The matrix of docs/reference/challenge.md: effects hidden at several strengths and levels of noise, none, two, and such as the
-# catalogue does not know, each set under its own seed. On all cores, in rounds that lengthen every set, so that it can be
-# stopped and gone on with at any time:
+# The matrix of docs/reference/challenge.md: every effect in turn, at several strengths and levels of noise and taken out of the
+# catalogue, two effects, and none, each set under seeds of its own. On all cores, in rounds that lengthen every set, so that it
+# can be stopped and gone on with at any time:
 #   examples/matrix.sh FOLDER [ROUNDS]
-# A round is 134 rigs, 8 rounds are 1072. ROSIN names another program than build/release/bin/rosin.
-# FOLDER/matrix.md has every set's score.
+# After 8 rounds it has 1172 rigs, 30 with each effect as strong as it comes. ROSIN names another program than
+# build/release/bin/rosin. FOLDER/matrix.md has every set's score.
 set -euo pipefail
 folder=${1:?folder for rigs, diagnoses and scores} rounds=${2:-8}
 rosin=$(realpath "${ROSIN:-$(dirname "${BASH_SOURCE[0]}")/../build/release/bin/rosin}")
 cores=$(nproc)
+effects=(bending-stiffness frequency-dependent-loss tension-modulation second-polarization point-mass point-damper support-resonance
+  ac-coupling channel-skew channel-crosstalk mains-hum sensor-nonlinearity sensor-resonance
+  slow-release torsion tension-drift rod-resonance finite-contact-width speed-ripple normal-force-ripple
+  thermal-friction elasto-plastic-friction)
 mkdir -p "$folder" && cd "$folder"
 
-set_of() { # name, rigs a round, seed, options
-  local name=$1 rigs=$2 seed=$3
+drawn() { # set, rigs after 8 rounds, seed, options: effects as they are drawn
+  local set=$1 rigs=$2 seed=$3
   shift 3
-  "$rosin" challenge --out "$name" --seed "$seed" --count $((round * rigs)) "$@" >/dev/null
+  "$rosin" challenge --out "$set" --seed "$seed" --count $((round * rigs / 8)) "$@" "${part[@]}" >/dev/null
+}
+in_turn() { # set, rigs of each effect after 8 rounds, seed of the first effect, options of the rigs -- of the diagnosis
+  local set=$1 rigs=$2 seed=$3 rig_options=()
+  shift 3
+  while [ "$1" != -- ]; do rig_options+=("$1"); shift; done
+  shift
+  for effect in "${effects[@]}"; do
+    "$rosin" challenge --out "$set" --seed "$((seed++))" --count $((round * rigs / 8)) --effect "$effect" --only-make \
+      "${rig_options[@]}" "${part[@]}" >/dev/null
+  done
+  "$rosin" challenge --out "$set" "$@" "${part[@]}" >/dev/null
 }
 all_sets() {
-  set_of one 60 81001 "$@"
-  set_of none 30 83003 --effects 0 "$@"
-  set_of two 12 82002 --effects 2 "$@"
-  set_of tenth 8 86006 --strength 0.1 "$@"
-  set_of db40 8 84004 --noise-db 40 "$@"
-  set_of db50 8 85005 --noise-db 50 "$@"
-  set_of left 8 88008 --leave-out "$@"
+  in_turn one 30 101000 --
+  drawn none 240 103000 --effects 0
+  drawn two 96 102000 --effects 2
+  in_turn tenth 2 106000 --strength 0.1 --
+  in_turn db50 2 105000 --noise-db 50 --
+  in_turn db40 2 104000 --noise-db 40 --
+  in_turn left 2 108000 -- --leave-out
 }
 
-for part in $(seq "$cores"); do
-  (for round in $(seq "$rounds"); do all_sets --shard "$part/$cores"; done) 2>"part-$part.log" &
+for core in $(seq "$cores"); do
+  (part=(--shard "$core/$cores"); for round in $(seq "$rounds"); do all_sets; done) 2>"part-$core.log" &
 done
 wait
-round=$rounds
+round=$rounds part=()
 all_sets # scores what all parts have done
 cat {one,none,two,tenth,db50,db40}/challenge.md left/left-out.md >matrix.md

@@ -38,7 +38,7 @@ inline double price_of(const scene_fit& f, const std::array<double, 2>& noise) {
     for (const effect_parameter& p : e.parameters) parameters += p.late ? 0 : 1;
   for (const double n : f.quality.samples) samples += n;
   const double cost = cost_of(f, noise);
-  return cost + parameters * std::log(samples) * std::max(1.0, cost / samples);
+  return cost + parameters * std::log(samples) * cost / samples;
 }
 
 /// The starting points of one effect at which the score peaks, the highest first.

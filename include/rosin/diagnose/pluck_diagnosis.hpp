@@ -154,6 +154,7 @@ private:
           0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
         d_.alternatives.push_back(f.effects.back().id());
     now_ = tried;
+    weigh_ = noise_;
   }
   /// Whether one was found and another may follow.
   bool add_one(int round) {
