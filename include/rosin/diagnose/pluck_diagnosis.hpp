@@ -154,7 +154,7 @@ private:
           0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
         d_.alternatives.push_back(f.effects.back().id());
     now_ = tried;
-    weigh_ = noise_;
+    weigh_ = noise_;  // by the declared model's, all that is left beside something strong would pass for noise
   }
   /// Whether one was found and another may follow.
   bool add_one(int round) {

@@ -27,6 +27,27 @@ TEST_CASE("of several effects the one that is there comes first") {
   CHECK(std::exp(fits[0].value[layout.size() + 1]) == doctest::Approx(14).epsilon(1e-3));
 }
 
+TEST_CASE(
+    "which effect comes first does not depend on the unit that what is left is counted in: parameters cost a share of that") {
+  const rosin::pluck_options options{.internal_loss = false};
+  const auto layout = test::two_plucks(options);
+  const rosin::string_facts facts{.fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .takes = 2};
+  const rosin::pluck_effect hum = rosin::hum_effect(facts, 50);
+  std::vector<double> lines(hum.parameters.size(), 0.0);
+  lines[0] = std::log(50.0), lines[1] = 4e-3, lines[3] = 2e-3, lines[2 + hum.parameters.size() / 2] = 4e-3;
+  rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
+  for (std::size_t t = 0; t < 2; ++t)
+    data.takes.push_back(test::scene_pluck(layout, {hum}, test::values_of(layout, lines), t, 3e-4, 3 + t));
+  rosin::scene_fit plain;
+  plain.value = test::values_of(layout);
+  for (const double unit_N : {3e-4, 3e-2}) {
+    CAPTURE(unit_N);
+    const auto fits = rosin::one_more_effect(data, plain, {rosin::crosstalk_effect(facts), hum}, false, {unit_N, unit_N});
+    REQUIRE(!fits.empty());
+    CHECK(fits[0].effects[0].name == "mains-hum");
+  }
+}
+
 TEST_CASE("what no parameter scales is sought from little on: an effect that hardly shows is found all the same") {
   const rosin::string_facts facts{
       .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};

@@ -20,13 +20,14 @@ inline const rosin::modal_rig plucked_rig{.string = {.length_m = 0.314,
                                                      .loss = {.quality = 900}}};
 
 /// Recorded by 16-bit converters with 0.3 mN of noise.
-inline rosin::pluck_take recorded(const rosin::modal_take& made, double force_N, std::uint64_t seed) {
+inline rosin::pluck_take recorded(const rosin::modal_take& made, double force_N, std::uint64_t seed, double ac_coupled_Hz = 0) {
   rosin::pluck_take take;
   take.name = "pluck-" + std::to_string(seed);
   take.rate_Hz = made.sample_rate_Hz;
   take.strength_N = force_N;
   take.position = 0.302;
-  const rosin::converter sensor{.gain = 1, .newtons_per_full_scale = 1.65, .noise_N = 0.3e-3, .bits = 16};
+  const rosin::converter sensor{
+      .gain = 1, .newtons_per_full_scale = 1.65, .noise_N = 0.3e-3, .ac_coupled_Hz = ac_coupled_Hz, .bits = 16};
   take.force_N = {rosin::convert(made.force_near_N, take.rate_Hz, sensor, 2 * seed).newtons(),
                   rosin::convert(made.force_far_N, take.rate_Hz, sensor, 2 * seed + 1).newtons()};
   return take;
