@@ -3,7 +3,7 @@
 # catalogue, two effects, and none, each set under seeds of its own. On all cores, in rounds that lengthen every set, so that it
 # can be stopped and gone on with at any time:
 #   examples/matrix.sh FOLDER [ROUNDS]
-# After 8 rounds it has 1172 rigs, 30 with each effect as strong as it comes. ROSIN names another program than
+# After 8 rounds it has 1172 rigs, 30 with each effect at full strength. ROSIN names another program than
 # build/release/bin/rosin. FOLDER/matrix.md has every set's score.
 set -euo pipefail
 folder=${1:?folder for rigs, diagnoses and scores} rounds=${2:-8}

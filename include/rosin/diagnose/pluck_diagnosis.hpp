@@ -88,17 +88,21 @@ private:
     if (d_.data.layout.ends_within_doubt(tried.value)) now_ = std::move(tried);
   }
   /// They count as an effect that was found: what their motion does, over so many periods, is what there was to explain.
-  [[nodiscard]] double done_by_ends(double periods, double samples) const {
+  [[nodiscard]] scene_fit without_ends(double periods) const {
     scene_data rigid{d_.data.takes, d_.data.guess, d_.data.options, pluck_layout(d_.data.takes, d_.data.options)};
     rigid.guess.ends = {};
-    return cost_of(fit_scene(rigid, {}, now_.value.head(rigid.layout.size()), {{1000, periods, true}}, weigh_), noise_) - samples;
+    return fit_scene(rigid, {}, now_.value.head(rigid.layout.size()), {{1000, periods, true}}, weigh_);
+  }
+  /// What there was to explain, in the units of the noise as it is known by now.
+  [[nodiscard]] double all_there_was() const {
+    return cost_of(nothing_found_, noise_) - nothing_found_.quality.samples[0] - nothing_found_.quality.samples[1];
   }
   /// Whether an effect takes away enough. Beside a strong one its own model's faults are worth something to others as well; but
   /// these leave most of them. What a declared end is off by is no other mode of it.
   [[nodiscard]] bool is_worth(const comparison& c, const pluck_effect& e, int round) const {
     if (round == 0 && !d_.data.layout.has_ends()) return true;
     constexpr double beyond_doubt = 300;
-    const bool much = c.was > 1e-4 * all_there_was_,
+    const bool much = c.was > 1e-4 * all_there_was(),
                at_known_end = e.at_end && e.place >= 0 && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
     return c.left < c.was / 3 && (much || (!at_known_end && c.left < c.was / 30 && c.gain > beyond_doubt));
   }
@@ -168,8 +172,7 @@ private:
         fit_scene(d_.data, now_.effects, now_.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh_);
     for (std::size_t c = 0; c < 2; ++c) noise_[c] = std::min({noise_[c], before.quality.noise[c], tried.quality.noise[c]});
     const comparison c = compare(before, tried);
-    if (round == 0)
-      d_.base = before, all_there_was_ = d_.data.layout.has_ends() ? done_by_ends(tried.horizon_periods, c.samples) : c.was;
+    if (round == 0) d_.base = before, nothing_found_ = d_.data.layout.has_ends() ? without_ends(tried.horizon_periods) : before;
     const bool worth = is_worth(c, tried.effects.back(), round);
     for (const scene_fit& f : fits)
       if (worth || &f == &tried) rank(f);
@@ -194,7 +197,7 @@ private:
         fit_scene(d_.data, now_.effects, now_.value, {{1000, tried.horizon_periods, true, freedom::all}}, weigh_);
     for (std::size_t c = 0; c < 2; ++c) noise_[c] = std::min(noise_[c], tried.quality.noise[c]);
     const comparison both = compare(before, tried);
-    if (!(both.left < both.was / 9 && both.was > 1e-4 * all_there_was_)) return false;
+    if (!(both.left < both.was / 9 && both.was > 1e-4 * all_there_was())) return false;
     rank(tried);
     accept(first, alone);
     accept(fits, both);
@@ -204,8 +207,7 @@ private:
   pluck_diagnosis& d_;
   const std::vector<pluck_effect>& all_;
   std::array<double, 2> weigh_, noise_{1e300, 1e300};
-  scene_fit now_;
-  double all_there_was_ = 0;
+  scene_fit now_, nothing_found_;
 };
 
 /// The declared model by itself: a string between ends that are rigid, or that move as is known.
