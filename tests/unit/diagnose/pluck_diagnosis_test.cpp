@@ -190,6 +190,41 @@ TEST_CASE("a string that its own motion stretches is found behind a high-pass, w
   CHECK(d->after < 1.2 * d->floor);
 }
 
+TEST_CASE("what a bead's model is off by is no loss, though the noise turns out to be little once the stiffness is found" *
+          doctest::test_suite("long")) {
+  const rosin::modal_rig rig{.string = {.length_m = 0.3307,
+                                        .tension_N = 54.18,
+                                        .fundamental_Hz = 498.34,
+                                        .bending_stiffness_Nm2 = 6.06e-5,
+                                        .loss = {.quality = 1057}}};
+  rosin::rig_burden burden;
+  burden.string.loads = {{0.5826, 8e-6, 0, 0}};
+  std::vector<rosin::pluck_take> takes;
+  for (const double force_N : {1.0, 0.5, 0.75}) {
+    takes.push_back(test::recorded(
+        *rosin::simulate_pluck(rig, burden, {.position = 0.1503, .force_N = force_N, .release_s = 0.004, .duration_s = 0.14}),
+        force_N, takes.size()));
+    takes.back().position = 0.151;
+  }
+  const std::vector held{takes.back()};
+  takes.pop_back();
+  const auto d = rosin::diagnose_plucks(
+      takes, held, {.fundamental_Hz = 498.4}, {.stiffness = false, .internal_loss = false},
+      [&](const rosin::pluck_fit_result& fit) {
+        const rosin::string_facts facts{fit.value[0],        takes[0].rate_Hz, fit.limits.stop_Hz, rig.string.impedance_Ns_m(),
+                                        rig.string.length_m, takes.size()};
+        auto all = rosin::catalogue_without({}, facts, fit.limits);
+        std::erase_if(all, [](const rosin::pluck_effect& e) {
+          return e.name != "point-mass" && e.name != "bending-stiffness" && e.name != "frequency-dependent-loss";
+        });
+        return all;
+      });
+  REQUIRE_MESSAGE(d, d.error());
+  REQUIRE(d->best.effects.size() == 2);
+  CHECK(d->explained);
+  for (const rosin::pluck_effect& e : d->best.effects) CHECK((e.name == "point-mass" || e.name == "bending-stiffness"));
+}
+
 TEST_CASE("a clock that wavers is a mismatch, though nothing of it shows at the partials, and nothing in the catalogue is it") {
   const auto wavering = [](double force_N, std::uint64_t seed) {
     auto take = test::modal_pluck(force_N, seed);
