@@ -61,8 +61,8 @@ struct contact_model {
 /// leave in a reconstruction. Found on strokes of another simulator (rosin challenge), where noise alone would have given a tenth
 /// of it.
 namespace contact_faults {
-inline constexpr double rod_frequency = 6e-4, rod_q = 0.012, rod_mass = 0.013, ripple = 0.009, slip_tone = 7e-5, bristles = 0.035,
-                        creep = 0.1;
+inline constexpr double rod_frequency = 6e-4, rod_q = 0.012, rod_mass = 0.013, ripple = 0.0135, slip_tone = 7e-5,
+                        bristles = 0.035, creep = 0.1;
 }
 
 struct contact_parameter {
