@@ -287,7 +287,8 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     first = open->statistic;
   if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
   if (!named) return !open;
-  if (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess)) return true;
+  const bool most_is_left = others == 0 && d.after > std::max(2 * d.noise_floor, 0.5 * d.before);
+  if (!most_is_left && (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess))) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
   if (others > 0) d.left_in_strokes = shown_by("stick-fluctuation", found);
