@@ -19,8 +19,7 @@ constexpr double further_tone_share =
     0.05;  ///< of what was gained so far on the same statistic: no model of a contact is exact either,
 constexpr double further_give_share = 0.2;     ///< and what one model of its give leaves another one takes up
 constexpr double further_other_share = 0.005;  ///< of what was gained on another statistic
-constexpr double left_of_sticking =
-    0.5;  ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
+constexpr double most_left = 0.5;  ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
 
 missing_effect described(const rosin::contact_hypothesis& h, double probability) {
   missing_effect m;
@@ -287,8 +286,8 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     first = open->statistic;
   if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
   if (!named) return !open;
-  const bool most_is_left = others == 0 && d.after > std::max(2 * d.noise_floor, 0.5 * d.before);
-  if (!most_is_left && (!sticking || stick_excess(found) < std::max(found.stick_floor, left_of_sticking * excess))) return true;
+  const bool most_is_left = others == 0 && d.after > std::max(2 * d.noise_floor, most_left * d.before);
+  if (!most_is_left && (!sticking || stick_excess(found) < std::max(found.stick_floor, most_left * excess))) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
   if (others > 0) d.left_in_strokes = shown_by("stick-fluctuation", found);

@@ -24,6 +24,30 @@ rosin::outcome<rosin::pluck_diagnosis> look(const std::vector<rosin::pluck_take>
       });
 }
 
+/// Three plucks of a rig at one place, through a high-pass if there is one, the third set aside; asked for these effects only.
+rosin::outcome<rosin::pluck_diagnosis> look_for(const std::vector<std::string>& names, const rosin::modal_rig& rig,
+                                                const rosin::rig_burden& burden, double position, double ac_coupled_Hz,
+                                                bool stiffness_declared) {
+  std::vector<rosin::pluck_take> takes;
+  for (const double force_N : {1.0, 0.5, 0.75}) {
+    takes.push_back(test::recorded(
+        *rosin::simulate_pluck(rig, burden, {.position = position, .force_N = force_N, .release_s = 0.004, .duration_s = 0.14}),
+        force_N, takes.size(), ac_coupled_Hz));
+    takes.back().position = position + 0.001;
+  }
+  const std::vector held{takes.back()};
+  takes.pop_back();
+  return rosin::diagnose_plucks(
+      takes, held, {.fundamental_Hz = rig.string.fundamental_Hz + 0.05},
+      {.stiffness = stiffness_declared, .internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+        const rosin::string_facts facts{fit.value[0],        takes[0].rate_Hz, fit.limits.stop_Hz, rig.string.impedance_Ns_m(),
+                                        rig.string.length_m, takes.size()};
+        auto all = rosin::catalogue_without({}, facts, fit.limits);
+        std::erase_if(all, [&](const auto& e) { return std::find(names.begin(), names.end(), e.name) == names.end(); });
+        return all;
+      });
+}
+
 }  // namespace
 
 TEST_CASE("a string as declared is left alone, and predicted to the noise") {
@@ -166,23 +190,7 @@ TEST_CASE("a string that its own motion stretches is found behind a high-pass, w
                                         .loss = {.quality = 1250}}};
   rosin::rig_burden burden;
   burden.string.axial_stiffness_N = 10.8e3;
-  std::vector<rosin::pluck_take> takes;
-  for (const double force_N : {1.0, 0.5, 0.75})
-    takes.push_back(test::recorded(
-        *rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.14}),
-        force_N, takes.size(), 5.33));
-  const std::vector held{takes.back()};
-  takes.pop_back();
-  const auto d = rosin::diagnose_plucks(
-      takes, held, {.fundamental_Hz = 362.7}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
-        const rosin::string_facts facts{fit.value[0],        takes[0].rate_Hz, fit.limits.stop_Hz, rig.string.impedance_Ns_m(),
-                                        rig.string.length_m, takes.size()};
-        auto all = rosin::catalogue_without({}, facts, fit.limits);
-        std::erase_if(all, [](const rosin::pluck_effect& e) {
-          return e.name != "ac-coupling" && e.name != "tension-modulation" && e.name != "massive-end";
-        });
-        return all;
-      });
+  const auto d = look_for({"ac-coupling", "tension-modulation", "massive-end"}, rig, burden, 0.3, 5.33, true);
   REQUIRE_MESSAGE(d, d.error());
   REQUIRE(d->best.effects.size() == 2);
   CHECK(d->explained);
@@ -199,26 +207,7 @@ TEST_CASE("what a bead's model is off by is no loss, though the noise turns out 
                                         .loss = {.quality = 1057}}};
   rosin::rig_burden burden;
   burden.string.loads = {{0.5826, 8e-6, 0, 0}};
-  std::vector<rosin::pluck_take> takes;
-  for (const double force_N : {1.0, 0.5, 0.75}) {
-    takes.push_back(test::recorded(
-        *rosin::simulate_pluck(rig, burden, {.position = 0.1503, .force_N = force_N, .release_s = 0.004, .duration_s = 0.14}),
-        force_N, takes.size()));
-    takes.back().position = 0.151;
-  }
-  const std::vector held{takes.back()};
-  takes.pop_back();
-  const auto d = rosin::diagnose_plucks(
-      takes, held, {.fundamental_Hz = 498.4}, {.stiffness = false, .internal_loss = false},
-      [&](const rosin::pluck_fit_result& fit) {
-        const rosin::string_facts facts{fit.value[0],        takes[0].rate_Hz, fit.limits.stop_Hz, rig.string.impedance_Ns_m(),
-                                        rig.string.length_m, takes.size()};
-        auto all = rosin::catalogue_without({}, facts, fit.limits);
-        std::erase_if(all, [](const rosin::pluck_effect& e) {
-          return e.name != "point-mass" && e.name != "bending-stiffness" && e.name != "frequency-dependent-loss";
-        });
-        return all;
-      });
+  const auto d = look_for({"point-mass", "bending-stiffness", "frequency-dependent-loss"}, rig, burden, 0.1503, 0, false);
   REQUIRE_MESSAGE(d, d.error());
   REQUIRE(d->best.effects.size() == 2);
   CHECK(d->explained);
