@@ -23,6 +23,11 @@ perl -MJSON::PP -e '
   die "no strokes\n" unless $s->{metric} eq "stick-fluctuation" && $s->{left} > 10 * $s->{floor} && $s->{floor} > 0' <untwisted.json
 expect 0 validate untwisted.json
 
+# A drift that the catalogue does not know is no width that leaves most of what the strokes show.
+expect 0 challenge --out drift --seed 108015 --count 1 --effect tension-drift --only-make
+expect 0 diagnose drift/rigs/challenge-10801500000 --without tension-drift
+says ": unexplained"
+
 # Samples that a recorder loses are missing from one pluck, and from both its channels.
 expect 0 challenge --out lost --seed 7 --count 1 --effect dropouts --only-make
 missing=$(perl -MJSON::PP -e 'local $/; print decode_json(<STDIN>)->{effects}[0]{parameters}{samples}' <lost/truth/challenge-700000.json)
