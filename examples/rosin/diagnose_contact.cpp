@@ -291,7 +291,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
   if (others > 0) d.left_in_strokes = shown_by("stick-fluctuation", found);
-  d.contact->after.clear();
+  d.contact->after.clear(), d.contact->cycle_after.clear();
   return false;
 }
 

@@ -25,8 +25,12 @@ expect 0 validate untwisted.json
 
 # A drift that the catalogue does not know is no width that leaves most of what the strokes show.
 expect 0 challenge --out drift --seed 108015 --count 1 --effect tension-drift --only-make
-expect 0 diagnose drift/rigs/challenge-10801500000 --without tension-drift
+expect 0 diagnose drift/rigs/challenge-10801500000 --without tension-drift --json drift.json
 says ": unexplained"
+perl -MJSON::PP -e '
+  local $/;
+  my $c = decode_json(<STDIN>)->{mismatch}{maps}{contact};
+  die "a correction that is none\n" if @{$c->{after}} || !@{$c->{before}}' <drift.json
 
 # Samples that a recorder loses are missing from one pluck, and from both its channels.
 expect 0 challenge --out lost --seed 7 --count 1 --effect dropouts --only-make
