@@ -207,6 +207,7 @@
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 #include <rosin/diagnose/pluck_effects.hpp>
+#include <rosin/diagnose/pluck_exchange.hpp>
 #include <rosin/diagnose/pluck_judgement.hpp>
 #include <rosin/diagnose/pluck_prediction.hpp>
 #include <rosin/diagnose/pluck_scene.hpp>

@@ -76,6 +76,16 @@ inline void note_foremost(const std::vector<double>& gains, std::size_t most, st
     if (gains[order[k]] > 0) foremost[order[k]] = true;
 }
 
+/// Whether the last effect of a fit is what its name says.
+inline bool is_itself(const scene_fit& f) {
+  const pluck_effect& e = f.effects.back();
+  if (!e.is_itself) return true;
+  std::vector<double> values;
+  Eigen::Index at = f.value.size() - static_cast<Eigen::Index>(e.parameters.size());
+  for (const effect_parameter& p : e.parameters) values.push_back(to_physical(p, f.value[at++]));
+  return e.is_itself(values);
+}
+
 inline std::vector<pluck_effect> with_one_more(std::vector<pluck_effect> effects, const pluck_effect& e) {
   effects.push_back(e);
   return effects;
@@ -251,50 +261,12 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
   std::sort(fits.begin(), fits.end(), better);
   detail::follow_up(data, fits, strong, noise);
   fits.insert(fits.end(), sought.begin(), sought.end());
+  std::erase_if(fits, [](const scene_fit& f) { return !detail::is_itself(f); });
   std::sort(fits.begin(), fits.end(), better);
   if (!fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek)
     fits.front() = detail::rewound(data, std::move(fits.front()), noise);
   detail::prefer_over_one_horizon(data, fits, noise);
   return fits;
-}
-
-namespace detail {
-
-/// A fit's effects and values without one of them.
-inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size_t which) {
-  scene_fit out = fit;
-  Eigen::Index at = data.layout.size();
-  for (std::size_t i = 0; i < which; ++i) at += static_cast<Eigen::Index>(fit.effects[i].parameters.size());
-  const auto gone = static_cast<Eigen::Index>(fit.effects[which].parameters.size()), rest = fit.value.size() - at - gone;
-  out.value.resize(at + rest);
-  out.value << fit.value.head(at), fit.value.tail(rest);
-  out.effects.erase(out.effects.begin() + static_cast<std::ptrdiff_t>(which));
-  return out;
-}
-
-}  // namespace detail
-
-/// Effects that were found one after the other may stand in one another's place: each in turn is taken out, and stays out where
-/// the evidence is higher or it is not is_worth(fit without it, fit, which); what best takes its place stays if it gains `nats`.
-[[nodiscard]] scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats,
-                                  std::array<double, 2> noise, const auto& is_worth) {
-  std::size_t count = fit.effects.size();
-  for (std::size_t tried = 0, k = 0; tried < count && count > 1; ++tried, k = (k + 1) % count) {
-    scene_fit rest = detail::without(data, fit, k);
-    rest = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true, data.compared()}}, noise);
-    if (!(detail::cost_of(rest, noise) < 1e299)) continue;
-    if (detail::price_of(rest, noise) < detail::price_of(fit, noise) || !is_worth(rest, fit, k)) {
-      fit = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true, freedom::all}}, noise);
-      --count, tried = 0, k = 0;
-      continue;
-    }
-    const auto fits = one_more_effect(data, rest, still_to_add(all, rest.effects), rest.quality.residual_ratio[0] > 0.05, noise);
-    if (fits.empty() || fits.front().horizon_periods != fit.horizon_periods) continue;
-    const double temper = std::max(1.0, fits.front().quality.inflation());
-    if (0.5 * (detail::price_of(fit, noise) - detail::price_of(fits.front(), noise)) / temper > nats)
-      fit = fits.front(), tried = 0, k = 0;
-  }
-  return fit;
 }
 
 }  // namespace rosin

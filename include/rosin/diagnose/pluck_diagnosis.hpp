@@ -11,7 +11,9 @@
 //                    amplitude) of what there was to explain: no model of a bead is exact either. Of less than that it takes
 //                    away nearly all, and gains 300. Two that are not worth it alone may be together, to a ninth.
 //
-// Two effects found one after the other may stand in one another's place; each is then taken out and sought anew.
+// Two effects found one after the other may stand in one another's place (pluck_exchange.hpp). What was found first may have been a
+// wrong beginning, which hides the others: where it leaves most, and more than noise is left in the end, the search begins anew
+// without it.
 //
 // The first threshold holds the false-alarm rate of the whole search over the catalogue (its largest gain on plucks without
 // an effect is 3 to 7). Evidence is  ln L - (k / 2) ln n.  Of takes that were not fitted next to nothing is free
@@ -76,6 +78,11 @@ public:
   }
   /// What no fit could take for anything else, the mean of both channels.
   [[nodiscard]] double noise() const { return rms_of(noise_); }
+  /// The effect found first, where it leaves most of what there was and more than noise is left in the end.
+  [[nodiscard]] std::string doubtful_beginning() const {
+    constexpr double most = 0.5, much = 1.5;
+    return first_leaves_ > most && d_.best.quality.inflation() > much ? first_ : "";
+  }
 
 private:
   /// A model against the one before: gain in ln L, divided by the misfit that is left, and what either leaves beyond the noise.
@@ -157,6 +164,7 @@ private:
       if (!is_variant(f) && f.horizon_periods == tried.horizon_periods &&
           0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
         d_.alternatives.push_back(f.effects.back().id());
+    if (first_.empty()) first_ = tried.effects.back().name, first_leaves_ = c.left / c.was;
     now_ = tried;
     weigh_ = noise_;  // by the declared model's, all that is left beside something strong would pass for noise
   }
@@ -208,7 +216,27 @@ private:
   const std::vector<pluck_effect>& all_;
   std::array<double, 2> weigh_, noise_{1e300, 1e300};
   scene_fit now_, nothing_found_;
+  std::string first_;
+  double first_leaves_ = 0;  ///< of the power of the mismatch
 };
+
+/// `d`, searched, and the noise. What is a doubtful beginning is kept unless the search without it leaves a ninth.
+[[nodiscard]] inline std::pair<pluck_diagnosis, double> searched(const pluck_diagnosis& d, std::vector<pluck_effect> all,
+                                                                 int most_effects) {
+  constexpr int most_beginnings = 3;
+  std::pair<pluck_diagnosis, double> kept{d, 0};
+  for (int i = 0; i < most_beginnings; ++i) {
+    pluck_diagnosis tried = d;
+    effect_search search(tried, all);
+    search.run(most_effects);
+    const auto excess = [](const pluck_diagnosis& x) { return x.best.quality.inflation() - 1; };
+    const std::string doubtful = search.doubtful_beginning();
+    if (i == 0 || excess(tried) < excess(kept.first) / 9) kept = {std::move(tried), search.noise()};
+    if (doubtful.empty()) break;
+    std::erase_if(all, [&](const pluck_effect& e) { return e.name == doubtful; });
+  }
+  return kept;
+}
 
 /// The declared model by itself: a string between ends that are rigid, or that move as is known.
 [[nodiscard]] inline outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess,
@@ -235,13 +263,12 @@ private:
   d.declared.value.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size())),
       d.declared.sd.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size()));
   d.declared.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(layout.size(), layout.size()));
-  const std::vector<pluck_effect> all = catalogue_for(*declared);
-  detail::effect_search search(d, all);
-  search.run(most_effects);
-  detail::drop_what_is_not_predicted(d, held, search.noise());
+  double least_noise = 0;
+  std::tie(d, least_noise) = detail::searched(d, catalogue_for(*declared), most_effects);
+  detail::drop_what_is_not_predicted(d, held, least_noise);
   const detail::seen_noise still = detail::noise_before_release(d.data, d.best);
   const bool modulated = detail::is_noisier(d.best.quality.noise, still);
-  const double noise = modulated ? detail::rms_of(still.rms_N) : search.noise();
+  const double noise = modulated ? detail::rms_of(still.rms_N) : least_noise;
   d.mismatch = detail::locate(d.data, d.base, noise);
   const auto& judged = held.empty() ? takes : held;
   detail::judge(d, judged, noise, still.samples > 0, modulated);

@@ -217,6 +217,9 @@ inline pluck_effect sensor_resonance_effect(const string_facts& f, int channel) 
                    s.sensors[static_cast<std::size_t>(channel)].resonance_Hz = v[0];
                    s.sensors[static_cast<std::size_t>(channel)].q = v[1];
                  }};
+  // Seen from below it lifts by (f / w0)^2 and delays by 1 / (Q w0): where the delay is more, it is as good as a skew.
+  const double seen_to_Hz = 0.25 * f.rate_Hz;
+  e.is_itself = [seen_to_Hz](const std::vector<double>& v) { return v[0] < seen_to_Hz || v[1] > v[0] / seen_to_Hz; };
   for (const double q : {4.0, 12.0, 40.0})
     for (const double x : detail::geometric(0.02 * f.rate_Hz, 0.8 * f.rate_Hz, 1 + 0.5 / q)) e.starts.push_back({x, q});
   return e;

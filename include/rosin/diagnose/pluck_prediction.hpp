@@ -8,7 +8,7 @@
 #pragma once
 
 #include <rosin/diagnose/mismatch_place.hpp>
-#include <rosin/diagnose/pluck_candidates.hpp>
+#include <rosin/diagnose/pluck_exchange.hpp>
 
 namespace rosin {
 

@@ -86,3 +86,20 @@ TEST_CASE("contact stick effects: a contact as declared gains by nothing") {
     CHECK_FALSE(h.peculiar);
   }
 }
+
+TEST_CASE("contact stick effects: one harmonic of the string that is off is no rod") {
+  auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 31),
+       b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 33);
+  for (auto* stroke : {&a, &b})
+    for (std::size_t i = 0; i < stroke->velocity.size(); ++i) {
+      const double off_m_s = 1e-3 * std::sin(8 * std::numbers::pi * 659 * static_cast<double>(i) / contact_rigs::rate + 3);
+      for (auto* v : {&stroke->velocity, &stroke->velocity_near, &stroke->velocity_far}) (*v)[i] += off_m_s;
+    }
+  rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
+  REQUIRE(bench.usable());
+  bench.use_damping(rosin::torsion_damping::viscous_modes);
+  const auto rod = rosin::rod_hypothesis(bench);
+  CHECK(rod.gain > 40);
+  CHECK(value(rod, "q") < 100);
+  CHECK_FALSE(rod.decided);
+}

@@ -69,47 +69,22 @@ TEST_CASE("what no parameter scales is sought from little on: an effect that har
   CHECK(found(rosin::ac_coupling_effect(facts), 0.05) == doctest::Approx(1).epsilon(0.2));
 }
 
-namespace {
-
-/// Two plucks of which the far channel comes late, and some of each leaks into the other; and both effects fitted to them.
-struct leaky_and_late {
-  rosin::string_facts facts{
+TEST_CASE("a channel that comes late is no sensor that rings above the band, though that delays it as much") {
+  const rosin::string_facts facts{
       .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
-  rosin::pluck_options options{.internal_loss = false};
-  rosin::pluck_layout layout = test::two_plucks(options);
-  rosin::pluck_effect late = rosin::skew_effect(facts), cross = rosin::crosstalk_effect(facts);
-  std::array<double, 2> noise{3e-4, 3e-4};
+  const rosin::pluck_options options{.internal_loss = false};
+  const auto layout = test::two_plucks(options);
   rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
-  rosin::scene_fit both;
-
-  explicit leaky_and_late(double leak) {
+  const auto tried = [&](const rosin::pluck_effect& hidden, const std::vector<double>& values) {
+    data.takes.clear();
     for (std::size_t t = 0; t < 2; ++t)
-      data.takes.push_back(test::scene_pluck(layout, {cross, late}, test::values_of(layout, {leak, 2e-6}), t, noise[0], 3 + t));
-    both = rosin::fit_scene(data, {cross, late}, test::values_of(layout, {std::max(leak, 1e-5), 2e-6}), {{}}, noise);
-  }
-};
-
-}  // namespace
-
-TEST_CASE("an effect that a later one has made needless is given up") {
-  const leaky_and_late plucks(0);
-  const auto any = [](const rosin::scene_fit&, const rosin::scene_fit&, std::size_t) { return true; };
-  const auto kept = rosin::exchanged(plucks.data, plucks.both, {plucks.late, plucks.cross}, 1, plucks.noise, any);
-  REQUIRE(kept.effects.size() == 1);
-  CHECK(kept.effects[0].id() == "channel-skew");
-  CHECK(kept.value[plucks.layout.size()] == doctest::Approx(2e-6).epsilon(0.01));
-}
-
-TEST_CASE("an effect that is there, but not worth a name beside a later one, is given up") {
-  const leaky_and_late plucks(1e-3);
-  double share_of_cross = 0;
-  const auto worth = [&](const rosin::scene_fit& rest, const rosin::scene_fit& fit, std::size_t which) {
-    if (fit.effects[which].id() != "channel-crosstalk") return true;
-    share_of_cross = rest.quality.power[0] / fit.quality.power[0] - 1;
-    return false;
+      data.takes.push_back(test::scene_pluck(layout, {hidden}, test::values_of(layout, values), t, 3e-4, 3 + t));
+    rosin::scene_fit plain;
+    plain.value = test::values_of(layout);
+    return rosin::one_more_effect(data, plain, {rosin::sensor_resonance_effect(facts, 1)}, false, {3e-4, 3e-4});
   };
-  const auto kept = rosin::exchanged(plucks.data, plucks.both, {plucks.late}, 1, plucks.noise, worth);
-  CHECK(share_of_cross > 0.05);
-  REQUIRE(kept.effects.size() == 1);
-  CHECK(kept.effects[0].id() == "channel-skew");
+  CHECK(tried(rosin::skew_effect(facts), {3.8e-6}).empty());
+  const auto seen = tried(rosin::sensor_resonance_effect(facts, 1), {std::log(54e3), std::log(9.0)});
+  REQUIRE(seen.size() == 1);
+  CHECK(std::exp(seen[0].value[layout.size()]) == doctest::Approx(54e3).epsilon(0.01));
 }
