@@ -57,7 +57,7 @@ namespace detail {
 [[nodiscard]] inline std::size_t take_nearest(const pluck_fit_result& fit, double declared) {
   std::size_t take = 0;
   for (std::size_t t = 1; t < fit.layout.takes(); ++t) {
-    const auto apart = [&](std::size_t i) { return std::abs(fit.value[fit.layout.position(i)] - declared); };
+    const auto apart = [&](std::size_t i) { return std::abs(fit.layout.declared_position(i) - declared); };
     if (apart(t) < apart(take)) take = t;
   }
   return take;

@@ -105,6 +105,7 @@ public:
   [[nodiscard]] std::size_t takes() const { return group_.size(); }
   /// Declared positions, one for each that is fitted.
   [[nodiscard]] const std::vector<double>& positions() const { return positions_; }
+  [[nodiscard]] double declared_position(std::size_t take) const { return positions_[static_cast<std::size_t>(group_[take])]; }
   [[nodiscard]] Eigen::Index position(std::size_t take) const { return first_position + group_[take]; }
   [[nodiscard]] Eigen::Index at(std::size_t take, int which) const {
     return first_position + static_cast<Eigen::Index>(positions_.size()) + static_cast<Eigen::Index>(take) * take_size + which;

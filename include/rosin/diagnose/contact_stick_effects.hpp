@@ -144,6 +144,15 @@ template <std::size_t N>
   return out;
 }
 
+/// Within the width of a torsional mode, whose model is never exact.
+[[nodiscard]] inline bool is_at_torsion(stick_bench& bench, double frequency_Hz) {
+  if (!bench.model().torsion) return false;
+  const stick_take& take = bench.records().front().take();
+  const double first_Hz = 0.5 * bench.model().torsion->speed_ratio / (take.delay_s[0] + take.delay_s[1]),
+               n = std::max(1.0, std::round(frequency_Hz / first_Hz));
+  return std::abs(frequency_Hz / (n * first_Hz) - 1) < std::max(0.01, 0.5 / bench.model().torsion->q);
+}
+
 }  // namespace detail
 
 /// Torsion is not as declared: its parameters free.
@@ -210,7 +219,7 @@ template <std::size_t N>
   const double weight = mass * 2 * std::numbers::pi * f0 / take.impedance_Ns_m,
                pitch_Hz = 0.5 / (take.delay_s[0] + take.delay_s[1]);
   if (weight > heavy && f0 / q < 0.1 * pitch_Hz) h.decided = false;  // one harmonic alone may be a fault of the string's model
-  h.peculiar = h.decided && weight < light;
+  h.peculiar = h.decided && weight < light && !detail::is_at_torsion(bench, f0);
   return h;
 }
 

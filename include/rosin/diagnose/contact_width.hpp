@@ -28,7 +28,9 @@ namespace detail {
 /// The half delay that costs least in one take; 0: no width costs less than none.
 [[nodiscard]] inline double search_width(wide_record& wide, const stick_record& record, const torsion_values& torsion) {
   const auto& delay = record.take().delay_s;
-  const auto cost = [&](double d) { return width_cost(wide.at(d, record.window(), torsion), record); };
+  const auto cost = [&](double d) {
+    return width_cost(wide.at(d, record.window(), torsion, torsion_damping::constant_q, 1), record);
+  };
   const double most = std::min(2e-5, 0.2 * std::min(delay[0], delay[1]));
   double best = 0, least = cost(0);
   for (double d = 2.5e-7; d < most; d += std::max(2.5e-7, 0.08 * d))
@@ -46,7 +48,7 @@ namespace detail {
   std::vector<std::vector<char>> marked;
   for (std::size_t t = 0; t < records.size(); ++t) {
     const smooth_window window = wide_record::below_pole(records[t].window(), below);
-    const wide_motion motion = wide[t].at(half_delay_s, window, torsion);
+    const wide_motion motion = wide[t].at(half_delay_s, window, torsion, torsion_damping::constant_q, 0);
     auto both = sticking_samples(records[t], motion.near_m_s, {.least = 0.1, .most = 0.5}, window);
     const auto far = sticking_samples(records[t], motion.far_m_s, {.least = 0.1, .most = 0.5}, window);
     for (std::size_t i = 0; i < both.size(); ++i) both[i] = both[i] && far[i] ? 1 : 0;
@@ -79,8 +81,8 @@ struct width_model {
     std::array<std::vector<std::vector<double>>, 2> shared{std::vector(here.compliance.begin(), here.compliance.end()),
                                                            std::vector(here.compliance.begin(), here.compliance.end())};
     const auto add_slope = [&](const width_model& up, const width_model& down, double step) {
-      const wide_motion high = wide[t].at(up.half_delay_s, window, up.torsion, up.damping),
-                        low = wide[t].at(down.half_delay_s, window, down.torsion, down.damping);
+      const wide_motion high = wide[t].at(up.half_delay_s, window, up.torsion, up.damping, 0),
+                        low = wide[t].at(down.half_delay_s, window, down.torsion, down.damping, 0);
       for (const std::size_t place : {0U, 1U}) {
         auto slope = place == 0 ? high.near_m_s : high.far_m_s;
         add_to(slope, place == 0 ? low.near_m_s : low.far_m_s, -1);

@@ -41,11 +41,13 @@ public:
                                                                                                                  take.far_N),
                                                                                                              take.rate_Hz} {}
 
+  /// `columns` of compliance; those that are not asked for are empty.
   [[nodiscard]] wide_motion at(double half_delay_s, const smooth_window& window, const torsion_values& values,
-                               torsion_damping damping = torsion_damping::constant_q) {
+                               torsion_damping damping = torsion_damping::constant_q, std::size_t columns = 2) {
     const torsion_pair torsion = rolling(half_delay_s, values, damping);
     const auto table = by_bins(window.edge_Hz, [&](double f) { return passage(f, half_delay_s, torsion); });
-    wide_motion m{row_of(table, 0, window), row_of(table, 1, window), {row_of(table, 2, window), row_of(table, 3, window)}};
+    wide_motion m{row_of(table, 0, window), row_of(table, 1, window), {}};
+    for (std::size_t i = 0; i < columns; ++i) m.compliance[i] = row_of(table, 2 + i, window);
     for (auto* v : {&m.near_m_s, &m.far_m_s})
       for (double& x : *v) x -= take_.rod_speed_m_s;
     return m;
@@ -113,15 +115,8 @@ private:
   /// A row of a table as a signal, through a window.
   template <class Table>
   [[nodiscard]] std::vector<double> row_of(const Table& table, std::size_t row, const smooth_window& window) {
-    const auto column = [&](std::size_t side) {
-      return [&, side](double f) {
-        const auto k = static_cast<std::size_t>(std::lround(f / near_.bin_Hz()));
-        return k < table.size() ? table[k][2 * row + side] : complex(0);
-      };
-    };
-    auto out = near_.through(window, column(0));
-    detail::add_to(out, far_.through(window, column(1)));
-    return out;
+    const auto column = [&](std::size_t side) { return [&, side](std::size_t k) { return table[k][2 * row + side]; }; };
+    return near_.through_with(far_, window, table.size(), column(0), column(1));
   }
 
   /// Rows: the centre's mean velocity less one contact's torsion, the force of both places.

@@ -88,8 +88,7 @@ template <class Physics = full_physics>
     out.delta_after = delta;
     const auto begin = static_cast<Eigen::Index>(motion.known.begin), count = static_cast<Eigen::Index>(motion.known.end) - begin;
     if (count < 100) break;
-    const reconstruction_sensitivity s = sensitivity<Physics>(out.tuned, in, limits, rate_Hz);
-    Eigen::MatrixXd S = s.difference(Eigen::seqN(begin, count), which);
+    Eigen::MatrixXd S = difference_sensitivity<Physics>(out.tuned, in, limits, rate_Hz, which).middleRows(begin, count);
     Eigen::VectorXd e = Eigen::VectorXd::Map(motion.force_near_N.data() + begin, count) -
                         Eigen::VectorXd::Map(motion.force_far_N.data() + begin, count);
     S.rowwise() -= S.colwise().mean().eval();

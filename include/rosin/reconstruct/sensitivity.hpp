@@ -12,6 +12,9 @@
 
 #include <Eigen/Core>
 
+#include <numeric>
+#include <span>
+
 namespace rosin {
 
 /// Columns: one waveform parameter each, then what else is uncertain (end_sensitivity.hpp). Rows: samples of the take.
@@ -38,26 +41,30 @@ template <std::size_t Size, std::size_t Inputs = Size / 4>
 
 }  // namespace detail
 
-/// Kernels of the derivatives: rows (parameter, quantity), columns as in end_signals: near and far.
-template <class Physics>
-[[nodiscard]] std::vector<fir> sensitivity_kernels(const calibration& c, const band& limits, double rate_Hz) {
+/// Kernels of the derivatives of some quantities (0: force, 1: difference, 2: velocity) by some parameters: rows (parameter,
+/// quantity), columns as in end_signals: near and far.
+template <class Physics, std::size_t Quantities>
+[[nodiscard]] std::vector<fir> sensitivity_kernels(const calibration& c, const band& limits, double rate_Hz,
+                                                   std::span<const Eigen::Index> parameters,
+                                                   const std::array<std::size_t, Quantities>& quantities) {
   const waveform_vector step = detail::derivative_steps(c);
   const passage_lags lags = lags_of_passage(std::max(c.at.delay_s[0], c.at.delay_s[1]), c.at.stiffness_s2, limits, rate_Hz);
   std::vector<fir> kernels;
-  for (int p = 0; p < waveform_parameters; ++p) {
-    const bool is_gain = p == static_cast<int>(waveform_parameter::gain_ratio);
+  for (const Eigen::Index p : parameters) {
+    const bool is_gain = p == static_cast<Eigen::Index>(waveform_parameter::gain_ratio);
     waveform_vector by = waveform_vector::Zero();
     by[p] = step[p];
     const bow_point_transfer<Physics> above(c.moved(by).at, limits, rate_Hz), below(c.moved(-by).at, limits, rate_Hz);
     constexpr std::size_t inputs = bow_point_transfer<Physics>::inputs;
     const auto slopes = [&](double f) {
-      const auto up = above(f), down = below(f);
-      std::array<std::complex<double>, 3 * inputs> out;
+      const auto up = above(f), down = is_gain ? up : below(f);
+      std::array<std::complex<double>, Quantities * inputs> out;
       for (std::size_t input = 0; input < inputs; ++input) {
         const auto more = detail::combine(up, input), less = detail::combine(down, input);
-        for (std::size_t quantity = 0; quantity < 3; ++quantity)
-          out[quantity * inputs + input] =
-              is_gain ? more[quantity] * (input % 2 == 0 ? -0.5 : 0.5) : (more[quantity] - less[quantity]) / (2 * step[p]);
+        for (std::size_t i = 0; i < Quantities; ++i) {
+          const std::size_t q = quantities[i];
+          out[i * inputs + input] = is_gain ? more[q] * (input % 2 == 0 ? -0.5 : 0.5) : (more[q] - less[q]) / (2 * step[p]);
+        }
       }
       return out;
     };
@@ -72,7 +79,10 @@ template <class Physics = full_physics>
 [[nodiscard]] reconstruction_sensitivity sensitivity(const calibration& c, const end_signals<double, Physics>& in,
                                                      const band& limits, double rate_Hz) {
   const std::size_t n = in[0].size();
-  block_convolver<double> convolver(in.size(), sensitivity_kernels<Physics>(c, limits, rate_Hz));
+  std::array<Eigen::Index, waveform_parameters> all;
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  block_convolver<double> convolver(in.size(),
+                                    sensitivity_kernels<Physics>(c, limits, rate_Hz, all, std::array<std::size_t, 3>{0, 1, 2}));
   reconstruction_sensitivity out;
   for (auto* part : {&out.force, &out.difference, &out.velocity}) part->resize(static_cast<Eigen::Index>(n), waveform_parameters);
   std::vector<std::span<double>> rows;
@@ -85,6 +95,21 @@ template <class Physics = full_physics>
 [[nodiscard]] reconstruction_sensitivity sensitivity(const calibration& c, std::span<const double> near_N,
                                                      std::span<const double> far_N, const band& limits, double rate_Hz) {
   return sensitivity<Physics>(c, end_signals<double, Physics>{near_N, far_N}, limits, rate_Hz);
+}
+
+/// Of the difference of the two versions of the force alone, by some parameters: a column each.
+template <class Physics>
+[[nodiscard]] Eigen::MatrixXd difference_sensitivity(const calibration& c, const end_signals<double, Physics>& in,
+                                                     const band& limits, double rate_Hz,
+                                                     std::span<const Eigen::Index> parameters) {
+  block_convolver<double> convolver(in.size(),
+                                    sensitivity_kernels<Physics>(c, limits, rate_Hz, parameters, std::array<std::size_t, 1>{1}));
+  const auto n = in[0].size();
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(parameters.size()));
+  std::vector<std::span<double>> rows;
+  for (Eigen::Index k = 0; k < out.cols(); ++k) rows.emplace_back(out.col(k).data(), n);
+  convolver.process(in, rows);
+  return out;
 }
 
 }  // namespace rosin

@@ -10,6 +10,7 @@
 
 #include <rosin/math/fft.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -71,15 +72,29 @@ public:
       for (std::size_t k = 0; k < used; ++k)
         work_[k] = windowed_[k] * std::complex<double>(transfer(static_cast<double>(k) * step));
     }
+    return back(used, first_ * std::complex<double>(transfer(0.0)).real());
+  }
+
+  /// The sum of two signals of one take, each through a transfer function of the bin, asked for the first `bins` only.
+  template <class Own, class Others>
+  [[nodiscard]] std::vector<double> through_with(contact_signal& other, const smooth_window& window, std::size_t bins,
+                                                 const Own& own, const Others& others) {
+    look_through(window), other.look_through(window);
+    const std::size_t used = std::min(bins, windowed_.size());
+    for (std::size_t k = 0; k < used; ++k) work_[k] = windowed_[k] * own(k) + other.windowed_[k] * others(k);
+    return back(used, used == 0 ? 0.0 : first_ * own(0).real() + other.first_ * others(0).real());
+  }
+
+private:
+  /// The samples of a spectrum of so many bins in work_, on a steady level.
+  [[nodiscard]] std::vector<double> back(std::size_t used, double steady) {
     std::fill(work_.begin() + static_cast<std::ptrdiff_t>(used), work_.end(), 0.0);
     fft_.inverse(work_.data(), buffer_.data());
-    const double steady = first_ * std::complex<double>(transfer(0.0)).real();
     std::vector<double> out(samples_);
     for (std::size_t i = 0; i < samples_; ++i) out[i] = buffer_[i] + steady;
     return out;
   }
 
-private:
   /// The spectrum through a window, as far as the window reaches: kept until another is asked for.
   void look_through(const smooth_window& window) {
     if (!windowed_.empty() && window.edge_Hz == edge_Hz_) return;
