@@ -55,6 +55,23 @@ TEST_CASE("contact stick effects: rods that ring for longer than a window of the
   }
 }
 
+TEST_CASE("contact stick effects: a light rod is peculiar, but not within the width of a torsional mode") {
+  constexpr double first_Hz = 7 * 660;  // of the torsion that rolls
+  for (const double frequency_Hz : {0.97 * first_Hz, 0.8 * first_Hz}) {
+    CAPTURE(frequency_Hz);
+    const contact_rigs::springy_rod<decltype(contact_rigs::curve())> law{contact_rigs::curve(), frequency_Hz, 14, 0.001};
+    const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 11),
+               b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 13);
+    rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
+    REQUIRE(bench.usable());
+    bench.use_damping(rosin::torsion_damping::viscous_modes);
+    const auto rod = rosin::rod_hypothesis(bench);
+    CHECK(rod.decided);
+    CHECK(value(rod, "frequency_Hz") == doctest::Approx(frequency_Hz).epsilon(0.02));
+    CHECK(rod.peculiar == (frequency_Hz < 0.9 * first_Hz));
+  }
+}
+
 TEST_CASE("contact stick effects: creep, with its speed and how sharply it grows") {
   constexpr double limit_m_s = 0.02, sharp = 0.3;
   const rosin::two_exponential_curve<double> curve{};

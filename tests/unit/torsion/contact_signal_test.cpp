@@ -56,3 +56,22 @@ TEST_CASE("contact signal: beyond its reach the window's kernel is gone") {
     if (i + reach < 500 || i > 500 + reach) CHECK(std::abs(y[i]) < 2e-3);
   CHECK(std::abs(y[500 + 2]) > 0.01);
 }
+
+TEST_CASE("contact signal: two signals through one transform are the sum of both, up to the bins that are asked") {
+  const rosin::smooth_window window{57600};
+  rosin::contact_signal a(tone(3000, 2000), rate), b(tone(3000, 7000), rate);
+  const auto of_a = [](double f) { return std::complex<double>(1, f / 1e4); };
+  const auto of_b = [](double f) { return std::complex<double>(0.5 - f / 3e4, 0); };
+  const auto by_bin = [&](const auto& transfer) {
+    return [&, transfer](std::size_t k) { return transfer(static_cast<double>(k) * a.bin_Hz()); };
+  };
+  const auto one = a.through(window, of_a), other = b.through(window, of_b);
+  const auto both = a.through_with(b, window, 100000, by_bin(of_a), by_bin(of_b));
+  double worst = 0;
+  for (std::size_t i = 0; i < both.size(); ++i) worst = std::max(worst, std::abs(both[i] - one[i] - other[i]));
+  CHECK(worst < 1e-12);
+  const auto below_Hz = 5000.0;
+  const auto low = a.through_with(b, window, static_cast<std::size_t>(below_Hz / a.bin_Hz()), by_bin(of_a), by_bin(of_b));
+  for (std::size_t i = 500; i < 2500; ++i)  // all of the tone at 2000 Hz, nothing of the one at 7000 Hz
+    CHECK(std::abs(low[i] - one[i] - 0.5 * 0.3) < 0.02);
+}
