@@ -53,7 +53,7 @@ inline lines_in_rest lines_at(const take_residual& rest, const std::vector<doubl
 inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
   std::vector<double> multiples{1};
   for (const double m : {2.0, 3.0, 4.0, 5.0, 7.0})
-    if (const double order = m * mains_Hz / f.fundamental_Hz; std::abs(order - std::max(1.0, std::round(order))) > 0.05)
+    if (const double order = m * mains_Hz / f.fundamental_Hz; std::abs(order - std::max(1.0, std::round(order))) > 0.02)
       multiples.push_back(m);
   const std::size_t of_take = 4 * multiples.size();
   pluck_effect e{.name = "mains-hum",

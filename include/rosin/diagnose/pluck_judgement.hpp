@@ -78,9 +78,9 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   const auto beyond_noise = [&](double x) { return std::sqrt(std::max(0.0, x * x - d.floor * d.floor)); };
   const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
   const bool doubtful = !noise_seen && d.floor > much_noise, known_ends = d.data.layout.has_ends();  // never to the last digit
-  const bool complete =
-      !doubtful && !brief &&
-      ((left == 1.0 && !modulated) || excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
+  const bool complete = !doubtful && !brief &&
+                        ((left == 1.0 && !modulated && excess < most_left * d.floor) ||
+                         excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
   d.mismatched = d.mismatched || (left > 1.5 && !(known_ends && was <= 0.25 * d.floor)) || modulated || doubtful || brief ||
                  was > 0.6 * d.floor;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());

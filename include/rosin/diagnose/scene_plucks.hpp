@@ -64,7 +64,8 @@ private:
 }
 
 /// Which parameters a fit moves. Corrections: late parameters, and how far declared terminations are off. Of a take that is only
-/// predicted, release and strength alone; and its place, where none of those that were fitted was made there.
+/// predicted, release and strength alone; its place, where none of those that were fitted was made there; and the offset that a
+/// high-pass remembers, as nobody knows for how long the string had been held.
 enum class freedom { all, no_corrections, release_only, release_and_place };
 
 class scene_plucks : public pluck_layout {
@@ -91,7 +92,9 @@ public:
     if (free_ == freedom::release_only || free_ == freedom::release_and_place) {
       if (p >= plain_size()) return added(p).take >= 0;
       if (p < at(0, 0)) return p >= first_position && free_ == freedom::release_and_place;
-      return p < first_of_ends() && (p - at(0, 0)) % take_size <= static_cast<Eigen::Index>(pluck_layout::strength);
+      const Eigen::Index mine = (p - at(0, 0)) % take_size;
+      return p < first_of_ends() &&
+             (mine <= static_cast<Eigen::Index>(strength) || is_ac_coupled(static_cast<std::size_t>(mine - offset_near)));
     }
     if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_ends())) return false;
     return p >= plain_size() ? !added(p).by_score : pluck_layout::is_free(p);
@@ -164,6 +167,10 @@ public:
   }
 
 private:
+  [[nodiscard]] bool is_ac_coupled(std::size_t channel) const {
+    return corner_Hz_[channel] > 0 ||
+           std::any_of(effects_.begin(), effects_.end(), [](const pluck_effect& e) { return e.name == "ac-coupling"; });
+  }
   /// What the poles depend on.
   [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v, const pluck_scene& s) const {
     const Eigen::Index more = v.size() - first_of_ends();

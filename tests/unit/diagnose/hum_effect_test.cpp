@@ -62,4 +62,6 @@ TEST_CASE("hum: no line near a partial of the string") {
   hum.apply(s, start.data(), 0);
   CHECK(s.hum.size() == 5);
   CHECK(hum.parameters.size() == 1 + 4 * 5);
+  // a thirtieth beside it they can be told apart: what the partial does the others tell as well
+  CHECK(rosin::hum_effect({290.6, hum_rate_Hz, 9000, 0.2, 0.6, 1}, 60).parameters.size() == 1 + 4 * 6);
 }

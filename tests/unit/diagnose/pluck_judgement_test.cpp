@@ -30,3 +30,21 @@ TEST_CASE(
     else CHECK(*h.left > 3 * d->floor);
   }
 }
+
+TEST_CASE(
+    "pluck judgement: what leaves mere noise of the plucks that were fitted, and much of the one set aside, is no explanation") {
+  constexpr double slow = 40e-6;
+  const std::vector takes{test::modal_pluck(1, 1, slow), test::modal_pluck(0.5, 2, slow)};
+  std::vector held{test::modal_pluck(0.75, 3, slow)};
+  for (double& x : held[0].force_N[1]) x += 0.006;
+  const auto d = rosin::diagnose_plucks(
+      takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+        return std::vector{
+            rosin::slow_release_effect({fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()})};
+      });
+  REQUIRE_MESSAGE(d, d.error());
+  CHECK(d->ranking.front().ids == std::vector<std::string>{"slow-release"});
+  CHECK(d->ranking.front().fit.quality.inflation() == 1.0);
+  CHECK(d->after > 7 * d->floor);
+  CHECK_FALSE(d->explained);
+}

@@ -76,3 +76,26 @@ TEST_CASE(
   held = test::scene_pluck(p.layout, {}, there, 0, seen_noise_N, 4);
   CHECK(left_over_floor(0.3) > 3);
 }
+
+TEST_CASE("for how long a string was held before the record nobody knows: what a high-pass remembers is free in a prediction") {
+  const auto layout = test::two_plucks({});
+  const rosin::string_facts facts{659.69, 128e3, 60e3, 0.175, 0.314, 2};
+  const auto coupled = rosin::ac_coupling_effect(facts);
+  const auto left_over_floor = [&](const std::vector<rosin::pluck_effect>& effects, std::array<double, 2> declared_Hz,
+                                   double offset_N) {
+    rosin::scene_data data{{}, {.fundamental_Hz = 660, .ac_coupled_Hz = declared_Hz}, {}, layout};
+    rosin::scene_fit fit;
+    fit.value = test::values_of(layout, effects.empty() ? std::vector<double>{} : std::vector{std::log(5.0)});
+    fit.effects = effects, fit.horizon_periods = 1e9;
+    for (std::size_t t = 0; t < 2; ++t)
+      data.takes.push_back(test::scene_pluck(layout, effects, fit.value, t, seen_noise_N, t + 1));
+    Eigen::VectorXd here = fit.value;
+    here[layout.at(0, rosin::pluck_layout::offset_near)] = offset_N;
+    here[layout.at(0, rosin::pluck_layout::offset_far)] = 0.4 * offset_N;
+    const auto [left, floor, samples] =
+        rosin::detail::predicted(data, fit, test::scene_pluck(layout, effects, here, 0, seen_noise_N, 3), seen_noise_N);
+    return left / floor;
+  };
+  CHECK(left_over_floor({coupled}, {0, 0}, 0.3) == doctest::Approx(1).epsilon(0.1));
+  CHECK(left_over_floor({}, {0, 0}, 0.3) > 20);  // the offset of a sensor that is DC coupled does not change by itself
+}
