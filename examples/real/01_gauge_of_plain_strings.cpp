@@ -108,7 +108,7 @@ int main(int count, char** words) {
   for (const plain_string& s : strings) {
     real::series shown{s.name, s.colour, {}, {}, false};
     double sum = 0, weight = 0;
-    int within = 0, notes = 0;
+    int within = 0, notes = 0, long_enough = 0, of_these = 0;
     for (const auto& file : files) {
       if (!file.stem().string().starts_with(std::string{s.name} + "_")) continue;
       ++notes;
@@ -117,11 +117,15 @@ int main(int count, char** words) {
       shown.x.push_back(g->fret);
       shown.y.push_back(g->error);
       within += std::abs(g->error) <= 2 ? 1 : 0;
+      if (1.96 * g->sd <= 2) ++long_enough, of_these += std::abs(g->error) <= 2 ? 1 : 0;
       sum += g->error / (g->sd * g->sd);
       weight += 1 / (g->sd * g->sd);
     }
     if (notes == 0) return std::printf("%s: no notes of the %s string\n", words[1], s.name), 1;
-    std::printf("%s: %d of %d notes within 2 %%; all together %+.2f %%\n", s.name, within, notes, sum / weight);
+    std::printf(
+        "%s: %d of %d notes within 2 %%; of those that ring long enough to tell so (95 %% sure) %d of %d; all together %+.2f "
+        "%%\n",
+        s.name, within, notes, of_these, long_enough, sum / weight);
     errors.all.push_back(std::move(shown));
   }
   return count < 3 || real::write_figure(words[2], {deviations, errors}) ? 0 : 1;

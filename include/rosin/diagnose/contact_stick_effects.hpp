@@ -206,14 +206,15 @@ template <std::size_t N>
                                      Eigen::Vector2d(std::log(highest_Hz), std::log(highest_q)), 5);
   detail::settle_hypothesis(bench, found.fit, h);
   const double f0 = std::exp(found.theta[0]), q = std::exp(found.theta[1]), mass = found.size > 0 ? 1 / found.size : 1e9;
-  const Eigen::VectorXd sd = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd sd = contact_faults::rod_scatter * found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   if (sd.size() == 3)
     h.parameters = {{"frequency_Hz", f0, f0 * std::hypot(sd[1], contact_faults::rod_frequency)},
                     {"q", q, q * std::hypot(sd[2], contact_faults::rod_q)},
                     {"mass_kg", mass, mass * std::hypot(mass * sd[0], contact_faults::rod_mass)}};
   constexpr double heaviest_kg = 0.15;  // modes of rods have grams
   // inside the range that was searched
-  h.decided = found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.2 && sd[2] < 1 && q > 4 && q < 0.98 * highest_q;
+  h.decided =
+      found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.3 && sd[2] < 1.5 && q > 4 && q < 0.98 * highest_q;
   constexpr double light = 250, heavy = 2000;  // m w_0 / Z; in two hundred rigs with rigid rods the lightest one seen has 816
   const stick_take& take = bench.records().front().take();
   const double weight = mass * 2 * std::numbers::pi * f0 / take.impedance_Ns_m,
