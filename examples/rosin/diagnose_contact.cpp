@@ -147,8 +147,8 @@ std::optional<open_contact> left_open(const std::vector<diagnosed_stroke>& strok
                                       const rig_diagnosis& d) {
   constexpr double much = 5, least = 0.06, beside_others = 2.5;
   const bool alone = d.missing.empty();
-  if (!found.as_declared && alone) return shown_by(found.hypotheses.front().statistic, found);
-  if (!found.as_declared || hums(d)) return std::nullopt;
+  if (!alone && hums(d)) return std::nullopt;
+  if (!found.as_declared) return shown_by(found.hypotheses.front().statistic, found);  // it stands, but may not be named
   const double allowance = alone ? 1 : beside_others;
   for (const auto& s : strokes)
     if (s.delta > std::max(allowance * least, much * parting_by_noise(s)))
