@@ -22,6 +22,19 @@ rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin:
   return out;
 }
 
+namespace {
+
+/// Of two plucks one alone does not tell what depends on the strength: both are fitted where that explains them to the noise.
+std::optional<rosin::pluck_diagnosis> by_both(const plucks_to_diagnose& plucks, const auto& catalogue) {
+  if (plucks.takes.size() != 1 || plucks.held.size() != 1) return std::nullopt;
+  auto found = rosin::diagnose_plucks({plucks.takes[0], plucks.held[0]}, {}, plucks.guess, plucks.options, catalogue);
+  if (!found || !found->explained || found->best.effects.empty() || found->best.quality.inflation() != 1.0) return std::nullopt;
+  found->held_out.clear();
+  return *std::move(found);
+}
+
+}  // namespace
+
 rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from,
                                                std::vector<std::string>& warnings, const std::vector<std::string>& without) {
   const auto plucks = plucks_of(rig, values, from);
@@ -39,6 +52,12 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
   };
   auto found = rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
   if (!found) return rosin::failure{found.error()};
+  if (!found->explained)
+    if (auto both = by_both(*plucks, catalogue)) {
+      *found = *std::move(both);
+      warnings.emplace_back(
+          "two plucks only: both were fitted, as one does not tell what depends on its strength; none was kept to judge by");
+    }
   plucks_told out{*std::move(found), {}};
   rosin::pluck_guess told = plucks->guess;
   told.ends = out.found.data.layout.ends(out.found.best.value);
