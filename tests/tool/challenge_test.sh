@@ -72,6 +72,17 @@ perl -MJSON::PP -e '
 expect 0 reconstruct forces/rigs/challenge-700000 --take bow-1 --out forces/bow-1.csv
 expect 0 compare forces/bow-1.csv forces/truth/challenge-700000.bow-1.csv --at-most 0.05
 
+# Of two plucks one alone does not tell stretching from the pitch: both are fitted, and that is said.
+expect 0 challenge --out pair --seed 101002 --count 1 --effect tension-modulation --only-make
+perl -0pi -e 's/\[\[take\]\]\nname = "pluck-3".*?(?=\[\[take\]\])//s' pair/rigs/*/rig.toml
+expect 0 diagnose pair/rigs/* --json pair.json
+says "two plucks only"
+perl -MJSON::PP -e '
+  local $/;
+  my $said = decode_json(<STDIN>);
+  die unless $said->{verdict} eq "explained" && @{ $said->{missing} } == 1 && $said->{missing}[0]{effect} eq "tension-modulation";
+  die if @{ $said->{fit}{held_out} }' <pair.json
+
 # A part is a part of the names, whatever else is in the folder: three rigs that cannot even be read.
 for n in 1 3 4; do mkdir -p parts/rigs/rig-$n; echo "schema = 1" >parts/rigs/rig-$n/rig.toml; done
 expect 0 challenge --out parts --shard 2/2
