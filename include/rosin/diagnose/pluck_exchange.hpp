@@ -26,8 +26,8 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
 
 }  // namespace detail
 
-/// Each effect in turn is taken out, and stays out where
-/// the evidence is higher or it is not is_worth(fit without it, fit, which); what best takes its place stays if it gains `nats`.
+/// Each effect in turn is taken out, and stays out where the evidence is higher or it is not is_worth(fit without it, fit,
+/// which); what best takes its place stays if it gains `nats`.
 [[nodiscard]] scene_fit exchanged(const scene_data& data, scene_fit fit, const std::vector<pluck_effect>& all, double nats,
                                   std::array<double, 2> noise, const auto& is_worth) {
   std::size_t count = fit.effects.size();

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What a fit of plucks leaves: where it shows, how well takes that were not fitted are predicted (of them only the instant of
-// release and the strength are free, and where no other was made at that place the place, within what a notebook tells of it and
-// of the nearest other), and whether what rings is noisier than what was held.
+// release and the strength are free, what a high-pass remembers of the time before, and where no other was made at that place the
+// place, within what a notebook tells of it and of the nearest other), and whether what rings is noisier than what was held.
 //
 #pragma once
 
