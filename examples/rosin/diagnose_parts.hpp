@@ -33,6 +33,7 @@ struct plucks_to_diagnose {
   rosin::pluck_guess guess;
   rosin::pluck_options options;
   std::vector<std::string> warnings;
+  bool marked = true;  ///< the rig file says what is held out; else it is the last of several
 };
 [[nodiscard]] rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin::rig_values& values,
                                                            provenance& from);

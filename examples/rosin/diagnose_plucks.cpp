@@ -16,6 +16,7 @@ rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin:
   if (out.held.empty() && out.takes.size() > 1) {  // the last of several: one that nothing is fitted to
     out.held.push_back(std::move(out.takes.back()));
     out.takes.pop_back();
+    out.marked = false;
   }
   if (!out.options.stiffness) out.guess.inharmonicity = 0;
   if (auto why = add_known_ends(rig, values, out.guess, out.warnings)) return *std::move(why);
@@ -24,9 +25,10 @@ rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin:
 
 namespace {
 
-/// Of two plucks one alone does not tell what depends on the strength: both are fitted where that explains them to the noise.
+/// Of two plucks one alone does not tell what depends on the strength: both are fitted where that explains them to the noise. What
+/// the rig file marks as held out stays so.
 std::optional<rosin::pluck_diagnosis> by_both(const plucks_to_diagnose& plucks, const auto& catalogue) {
-  if (plucks.takes.size() != 1 || plucks.held.size() != 1) return std::nullopt;
+  if (plucks.marked || plucks.takes.size() != 1) return std::nullopt;
   auto found = rosin::diagnose_plucks({plucks.takes[0], plucks.held[0]}, {}, plucks.guess, plucks.options, catalogue);
   if (!found || !found->explained || found->best.effects.empty() || found->best.quality.inflation() != 1.0) return std::nullopt;
   found->held_out.clear();

@@ -82,6 +82,13 @@ perl -MJSON::PP -e '
   my $said = decode_json(<STDIN>);
   die unless $said->{verdict} eq "explained" && @{ $said->{missing} } == 1 && $said->{missing}[0]{effect} eq "tension-modulation";
   die if @{ $said->{fit}{held_out} }' <pair.json
+# A pluck that the rig file marks as held out is not fitted for all that.
+perl -0pi -e 's/(name = "pluck-2")/$1\nhold_out = true/' pair/rigs/*/rig.toml
+expect 0 diagnose pair/rigs/* --json marked.json
+perl -MJSON::PP -e '
+  local $/;
+  my $said = decode_json(<STDIN>);
+  die unless $said->{verdict} eq "unexplained" && "@{ $said->{fit}{held_out} }" eq "pluck-2";' <marked.json
 
 # A part is a part of the names, whatever else is in the folder: three rigs that cannot even be read.
 for n in 1 3 4; do mkdir -p parts/rigs/rig-$n; echo "schema = 1" >parts/rigs/rig-$n/rig.toml; done

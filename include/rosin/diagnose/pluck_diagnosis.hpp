@@ -26,6 +26,8 @@
 #include <rosin/diagnose/pluck_judgement.hpp>
 #include <rosin/diagnose/sympathetic_effect.hpp>
 
+#include <tuple>
+
 namespace rosin {
 
 namespace detail {

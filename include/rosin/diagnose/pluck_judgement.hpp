@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What a diagnosis of plucks says, and how takes that were not fitted judge it. What they do not bear out is dropped. Explained is
-// what leaves on them no more than a quarter of the noise beyond it, or 12 % of what there was and six times the noise. A mismatch
+// what leaves on them no more than a quarter of the noise beyond it, or 12 % of what there was and six times the noise (of what
+// leaves mere noise of the fitted takes, six times the noise is asked alone; of two effects or more always twice it). A mismatch
 // needs no name: it is also where they are off by more than 0.6 of the noise, and where what rings is noisier than what was held.
 // They judge the likeliest of the models that were not taken as well.
 //

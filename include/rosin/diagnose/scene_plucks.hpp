@@ -94,7 +94,7 @@ public:
       if (p < at(0, 0)) return p >= first_position && free_ == freedom::release_and_place;
       const Eigen::Index mine = (p - at(0, 0)) % take_size;
       return p < first_of_ends() &&
-             (mine <= static_cast<Eigen::Index>(strength) || is_ac_coupled(static_cast<std::size_t>(mine - offset_near)));
+             (mine <= static_cast<Eigen::Index>(strength) || remembers(static_cast<std::size_t>(mine - offset_near)));
     }
     if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_ends())) return false;
     return p >= plain_size() ? !added(p).by_score : pluck_layout::is_free(p);
@@ -167,9 +167,10 @@ public:
   }
 
 private:
-  [[nodiscard]] bool is_ac_coupled(std::size_t channel) const {
+  /// A high-pass, declared or found.
+  [[nodiscard]] bool remembers(std::size_t channel) const {
     return corner_Hz_[channel] > 0 ||
-           std::any_of(effects_.begin(), effects_.end(), [](const pluck_effect& e) { return e.name == "ac-coupling"; });
+           std::any_of(effects_.begin(), effects_.end(), [](const pluck_effect& e) { return e.remembers; });
   }
   /// What the poles depend on.
   [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v, const pluck_scene& s) const {

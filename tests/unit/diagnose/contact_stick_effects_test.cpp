@@ -16,16 +16,32 @@ double value(const rosin::contact_hypothesis& h, const char* name) {
   return -1;
 }
 
+/// A slow and a fast stroke, and the bench that looks at them with the torsion they were made with.
+struct two_strokes {
+  contact_rigs::stroke slow, fast;
+  std::vector<rosin::contact_take> takes{slow.take(), fast.take()};  // views of them
+  rosin::stick_bench bench{takes, contact_rigs::declared()};
+};
+
+template <class Law>
+[[nodiscard]] two_strokes over(const Law& law, std::uint64_t slow_seed, std::uint64_t fast_seed) {
+  return {contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, slow_seed),
+          contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, fast_seed)};
+}
+
+/// What the bench says of a rod.
+[[nodiscard]] rosin::contact_hypothesis rod_of(rosin::stick_bench& bench) {
+  REQUIRE(bench.usable());
+  bench.use_damping(rosin::torsion_damping::viscous_modes);
+  return rosin::rod_hypothesis(bench);
+}
+
 }  // namespace
 
 TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q and mass") {
   const contact_rigs::springy_rod<decltype(contact_rigs::curve())> law{contact_rigs::curve(), 1800, 14, 0.003};
-  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 11),
-             b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 13);
-  rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
-  REQUIRE(bench.usable());
-  bench.use_damping(rosin::torsion_damping::viscous_modes);
-  const auto rod = rosin::rod_hypothesis(bench);
+  auto [slow, fast, takes, bench] = over(law, 11, 13);
+  const auto rod = rod_of(bench);
   CHECK(rod.decided);
   CHECK(rod.gain > 300);
   CHECK(rod.held_out_gain > 200);
@@ -34,7 +50,7 @@ TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q an
   CHECK(value(rod, "mass_kg") == doctest::Approx(0.003).epsilon(0.06));
   CHECK(rod.peculiar);
   for (const auto& other :
-       {rosin::torsion_hypothesis(bench), rosin::bristle_hypothesis(bench), rosin::creep_hypothesis(bench, {a.take(), b.take()})})
+       {rosin::torsion_hypothesis(bench), rosin::bristle_hypothesis(bench), rosin::creep_hypothesis(bench, takes)})
     CHECK(other.density < 0.3 * rod.density);
 }
 
@@ -42,12 +58,8 @@ TEST_CASE("contact stick effects: rods that ring for longer than a window of the
   const struct { double frequency_Hz, q; } rods[] = {{1340, 280}, {700, 170}, {150, 60}};
   for (const auto& r : rods) {
     const contact_rigs::springy_rod<decltype(contact_rigs::curve())> law{contact_rigs::curve(), r.frequency_Hz, r.q, 0.004};
-    const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 17),
-               b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 19);
-    rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
-    REQUIRE(bench.usable());
-    bench.use_damping(rosin::torsion_damping::viscous_modes);
-    const auto rod = rosin::rod_hypothesis(bench);
+    auto [slow, fast, takes, bench] = over(law, 17, 19);
+    const auto rod = rod_of(bench);
     CHECK(rod.decided);
     CHECK(value(rod, "frequency_Hz") == doctest::Approx(r.frequency_Hz).epsilon(0.003));
     CHECK(value(rod, "q") == doctest::Approx(r.q).epsilon(0.08));
@@ -60,12 +72,8 @@ TEST_CASE("contact stick effects: a light rod is peculiar, but not within the wi
   for (const double frequency_Hz : {0.97 * first_Hz, 0.8 * first_Hz}) {
     CAPTURE(frequency_Hz);
     const contact_rigs::springy_rod<decltype(contact_rigs::curve())> law{contact_rigs::curve(), frequency_Hz, 14, 0.001};
-    const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 11),
-               b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 13);
-    rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
-    REQUIRE(bench.usable());
-    bench.use_damping(rosin::torsion_damping::viscous_modes);
-    const auto rod = rosin::rod_hypothesis(bench);
+    auto [slow, fast, takes, bench] = over(law, 11, 13);
+    const auto rod = rod_of(bench);
     CHECK(rod.decided);
     CHECK(value(rod, "frequency_Hz") == doctest::Approx(frequency_Hz).epsilon(0.02));
     CHECK(rod.peculiar == (frequency_Hz < 0.9 * first_Hz));
@@ -76,12 +84,10 @@ TEST_CASE("contact stick effects: creep, with its speed and how sharply it grows
   constexpr double limit_m_s = 0.02, sharp = 0.3;
   const rosin::two_exponential_curve<double> curve{};
   const rosin::creep<rosin::two_exponential_curve<double>> law{curve, {limit_m_s, sharp}};
-  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 11),
-             b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 13);
-  rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
+  auto [slow, fast, takes, bench] = over(law, 11, 13);
   REQUIRE(bench.usable());
   bench.use_damping(rosin::torsion_damping::viscous_modes);
-  const auto creep = rosin::creep_hypothesis(bench, {a.take(), b.take()});
+  const auto creep = rosin::creep_hypothesis(bench, takes);
   CHECK(creep.gain > 1000);
   CHECK(creep.held_out_gain > 1000);
   CHECK(value(creep, "sharpness") == doctest::Approx(sharp).epsilon(0.1));
@@ -92,10 +98,7 @@ TEST_CASE("contact stick effects: creep, with its speed and how sharply it grows
 }
 
 TEST_CASE("contact stick effects: a contact as declared gains by nothing") {
-  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 31),
-             b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 33);
-  const std::vector<rosin::contact_take> takes{a.take(), b.take()};
-  rosin::stick_bench bench(takes, contact_rigs::declared());
+  auto [slow, fast, takes, bench] = over(contact_rigs::curve(), 31, 33);
   REQUIRE(bench.usable());
   for (const auto& h : {rosin::torsion_hypothesis(bench), rosin::rod_hypothesis(bench), rosin::bristle_hypothesis(bench),
                         rosin::creep_hypothesis(bench, takes)}) {
@@ -112,10 +115,8 @@ TEST_CASE("contact stick effects: one harmonic of the string that is off is no r
       const double off_m_s = 1e-3 * std::sin(8 * std::numbers::pi * 659 * static_cast<double>(i) / contact_rigs::rate + 3);
       for (auto* v : {&stroke->velocity, &stroke->velocity_near, &stroke->velocity_far}) (*v)[i] += off_m_s;
     }
-  rosin::stick_bench bench({a.take(), b.take()}, contact_rigs::declared());
-  REQUIRE(bench.usable());
-  bench.use_damping(rosin::torsion_damping::viscous_modes);
-  const auto rod = rosin::rod_hypothesis(bench);
+  two_strokes strokes{a, b};
+  const auto rod = rod_of(strokes.bench);
   CHECK(rod.gain > 40);
   CHECK(value(rod, "q") < 100);
   CHECK_FALSE(rod.decided);
