@@ -224,20 +224,17 @@ private:
 
 /// `d`, searched, and the noise. What is a doubtful beginning is kept unless the search without it leaves a ninth.
 [[nodiscard]] inline std::pair<pluck_diagnosis, double> searched(const pluck_diagnosis& d, std::vector<pluck_effect> all,
-                                                                 int most_effects) {
-  constexpr int most_beginnings = 3;
-  std::pair<pluck_diagnosis, double> kept{d, 0};
-  for (int i = 0; i < most_beginnings; ++i) {
-    pluck_diagnosis tried = d;
-    effect_search search(tried, all);
-    search.run(most_effects);
-    const auto excess = [](const pluck_diagnosis& x) { return x.best.quality.inflation() - 1; };
-    const std::string doubtful = search.doubtful_beginning();
-    if (i == 0 || excess(tried) < excess(kept.first) / 9) kept = {std::move(tried), search.noise()};
-    if (doubtful.empty()) break;
-    std::erase_if(all, [&](const pluck_effect& e) { return e.name == doubtful; });
-  }
-  return kept;
+                                                                 int most_effects, bool once_more = true) {
+  std::pair<pluck_diagnosis, double> out{d, 0};
+  effect_search search(out.first, all);
+  search.run(most_effects);
+  out.second = search.noise();
+  const std::string doubtful = search.doubtful_beginning();
+  if (!once_more || doubtful.empty()) return out;
+  std::erase_if(all, [&](const pluck_effect& e) { return e.name == doubtful; });
+  auto other = searched(d, std::move(all), most_effects, false);
+  const auto excess = [](const pluck_diagnosis& x) { return x.best.quality.inflation() - 1; };
+  return excess(other.first) < excess(out.first) / 9 ? other : out;
 }
 
 /// The declared model by itself: a string between ends that are rigid, or that move as is known.
