@@ -76,8 +76,8 @@ rosin::outcome<heard_plucks> read_all(const rosin::rig& rig, provenance& from, r
     else if (read) add_signals(take, read->signals, out);
   }
   if (out.fitted.empty() && out.held.empty())
-    return rosin::failure{rig.file + ": no pluck heard by a pickup, a microphone or a force channel"};
-  if (out.fitted.empty()) return rosin::failure{rig.file + ": every pluck is marked hold_out: none is left to fit"};
+    return failed(rig.file + ": no pluck heard by a pickup, a microphone or a force channel", d.warnings);
+  if (out.fitted.empty()) return failed(rig.file + ": every pluck is marked hold_out: none is left to fit", d.warnings);
   set_aside(out, rig.string.fundamental_Hz);
   return out;
 }
@@ -220,10 +220,8 @@ rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provena
   if (!plucks) return rosin::failure{plucks.error()};
   const std::vector<std::string> declared = rig.model ? rig.model->physics : std::vector<std::string>{};
   const auto found = rosin::diagnose_pickups(plucks->fitted, plucks->held, {rig.string.fundamental_Hz, declared, without});
-  if (!found) return rosin::failure{rig.file + ": " + found.error()};
-  if (found->judged.empty())
-    return rosin::failure{rig.file + ": no take that was set aside could be heard" +
-                          (found->warnings.empty() ? "" : "\n" + found->warnings.back())};
+  if (!found) return failed(rig.file + ": " + found.error(), d.warnings);
+  if (found->judged.empty()) return failed(rig.file + ": no take that was set aside could be heard", found->warnings);
   take_over(*found, values, *plucks, d);
   own_up(rig, *found, *plucks, d);
   return d;

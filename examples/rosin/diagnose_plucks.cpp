@@ -11,8 +11,8 @@ rosin::outcome<plucks_to_diagnose> plucks_of(const rosin::rig& rig, const rosin:
   rig_plucks plucks = read_plucks(rig, from);
   plucks_to_diagnose out{std::move(plucks.takes), std::move(plucks.held_out), guess_of(rig, values), options_for(physics_of(rig)),
                          std::move(plucks.warnings)};
-  if (out.takes.empty() && out.held.empty()) return rosin::failure{rig.file + ": no pluck to compare with"};
-  if (out.takes.empty()) return rosin::failure{rig.file + ": every pluck is marked hold_out: none is left to fit"};
+  if (out.takes.empty() && out.held.empty()) return failed(rig.file + ": no pluck to compare with", out.warnings);
+  if (out.takes.empty()) return failed(rig.file + ": every pluck is marked hold_out: none is left to fit", out.warnings);
   if (out.held.empty() && out.takes.size() > 1) {  // the last of several: one that nothing is fitted to
     out.held.push_back(std::move(out.takes.back()));
     out.takes.pop_back();
@@ -53,7 +53,13 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
     return rosin::catalogue_without(known, facts, fit.limits);
   };
   auto found = rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
-  if (!found) return rosin::failure{found.error()};
+  rosin::pluck_guess told = plucks->guess;
+  if (!found) {  // of one of another string or pitch nothing rings as declared together
+    auto odd = rosin::find_odd_pluck(plucks->takes, plucks->held, told, plucks->options, catalogue);
+    if (!odd) return failed(found.error(), plucks->warnings);
+    rosin::pluck_diagnosis others = odd->others;
+    return plucks_told{std::move(others), *std::move(odd)};
+  }
   if (!found->explained)
     if (auto both = by_both(*plucks, catalogue)) {
       *found = *std::move(both);
@@ -61,7 +67,6 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
           "two plucks only: both were fitted, as one does not tell what depends on its strength; none was kept to judge by");
     }
   plucks_told out{*std::move(found), {}};
-  rosin::pluck_guess told = plucks->guess;
   told.ends = out.found.data.layout.ends(out.found.best.value);
   if (out.found.explained) return out;
   out.odd = rosin::find_odd_pluck(plucks->takes, plucks->held, told, plucks->options, catalogue);

@@ -91,10 +91,9 @@ rosin::outcome<pickup_calibration> calibrate_pickups(const rosin::rig& rig, prov
   if (!out.results.empty()) return out;
   const bool any = std::any_of(rig.takes.begin(), rig.takes.end(),
                                [](const auto& t) { return t.kind == rosin::take_kind::pluck && !t.hold_out; });
-  std::string why = rig.file + (any ? ": no pluck that could be fitted"
-                                    : ": take: none of kind pluck (hold_out aside), so there is nothing to fit");
-  for (const auto& line : out.warnings) why += "\n" + line;
-  return rosin::failure{why};
+  return failed(rig.file + (any ? ": no pluck that could be fitted"
+                                : ": take: none of kind pluck (hold_out aside), so there is nothing to fit"),
+                out.warnings);
 }
 
 json to_json(const pickup_calibration& c, const provenance& from) {

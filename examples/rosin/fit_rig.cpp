@@ -137,14 +137,12 @@ rosin::outcome<rig_calibration> calibrate(const rosin::rig& rig, provenance& fro
   rig_plucks plucks = read_plucks(rig, from);
   out.takes = std::move(plucks.takes), out.held_out = std::move(plucks.held_out);
   out.warnings = std::move(plucks.warnings), out.incomplete = plucks.incomplete;
-  if (out.takes.empty()) {
-    std::string why =
-        rig.file + ": no pluck to calibrate from; record a pluck made by a breaking wire at the contact, or give a calibration";
-    for (const auto& line : out.warnings) why += "\n" + line;
-    return rosin::failure{why};
-  }
+  if (out.takes.empty())
+    return failed(
+        rig.file + ": no pluck to calibrate from; record a pluck made by a breaking wire at the contact, or give a calibration",
+        out.warnings);
   auto fit = any_end_moves(rig) ? fit_on_moving_ends(rig, out) : rosin::fit_plucks(out.takes, guess_of(rig, out.values));
-  if (!fit) return rosin::failure{fit.error()};
+  if (!fit) return failed(fit.error(), out.warnings);
   out.fit = *std::move(fit);
   derive_units(rig, out);
   out.declared = out.fit.layout.positions();

@@ -35,6 +35,12 @@ std::optional<checked_take> read_telling(const rosin::rig& rig, const rosin::tak
   return *std::move(out);
 }
 
+rosin::failure failed(const std::string& why, const std::vector<std::string>& noticed) {
+  std::string text = why;
+  for (const auto& line : noticed) text += "\n" + line;
+  return rosin::failure{text};
+}
+
 rosin::outcome<checked_take> read_sound_take(const rosin::rig& rig, const rosin::take& take, provenance& from) {
   auto out = read_take(rig, take, from);
   if (!out || !rosin::has_error(out->check.findings)) return out;

@@ -28,6 +28,9 @@ struct checked_take {
 [[nodiscard]] std::optional<checked_take> read_telling(const rosin::rig& rig, const rosin::take& take, provenance& from,
                                                        std::vector<std::string>& warnings);
 
+/// Why nothing can be done, and what was noticed on the way, which mostly tells the reason.
+[[nodiscard]] rosin::failure failed(const std::string& why, const std::vector<std::string>& noticed);
+
 /// As read_take, but a take with an error is refused: nothing sound can be calculated from it.
 [[nodiscard]] rosin::outcome<checked_take> read_sound_take(const rosin::rig& rig, const rosin::take& take, provenance& from);
 

@@ -1,10 +1,10 @@
 #!/usr/bin/perl
 # A rig folder made from closed forms: three plucks and a stroke of an ideal string with constant Q, forces on both ends.
 #
-#   closed_form_rig.pl FOLDER [ac] [short] [skew=SECONDS] [leak=FRACTION]
+#   closed_form_rig.pl FOLDER [ac] [short] [skew=SECONDS] [leak=FRACTION] [pitch=HERTZ]
 #
 # ac: the near channel is AC coupled, and says so.  skew: the far channel of the plucks comes late by that much.  leak: that part of
-# each channel is in the other one too. The rig file says nothing of the last two.
+# each channel is in the other one too. The rig file says nothing of the last two. pitch: of the string; the rig file says 240 Hz all the same.
 # short: plucks of a tenth of a second at 16 kHz, and no stroke.
 #
 # Pluck of 1 N at p:  F_near = sum_n 2/(n pi) sin(n pi p) Re exp(s_n t), F_far with (-1)^(n+1). Its negative derivative is the answer
@@ -13,14 +13,15 @@ use strict;
 use warnings;
 
 my ($folder, @options) = @ARGV;
-my ($kind, $short, $skew, $leak) = ('', 0, 0, 0);
+my ($kind, $short, $skew, $leak, $pitch) = ('', 0, 0, 0, 240.31);
 for (@options) {
   if (/^skew=(.+)/) { $skew = $1 }
   elsif (/^leak=(.+)/) { $leak = $1 }
+  elsif (/^pitch=(.+)/) { $pitch = $1 }
   elsif ($_ eq 'short') { $short = 1 }
   else { $kind = $_ }
 }
-my ($rate, $f0, $p, $q, $pi) = ($short ? 16000 : 48000, 240.31, 0.2987, 800, 4 * atan2(1, 1));
+my ($rate, $f0, $p, $q, $pi) = ($short ? 16000 : 48000, $pitch, 0.2987, 800, 4 * atan2(1, 1));
 my @gain = (1.013, 0.978);
 my $full = 2;
 srand 7;

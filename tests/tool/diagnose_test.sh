@@ -80,6 +80,14 @@ holds cut.json "$explained" '$m->{effect} eq "dropouts" && value("samples") == 5
   '$d->{fit}{before} > 10 * $d->{fit}{noise_floor} && $d->{fit}{after} < 1.3 * $d->{fit}{noise_floor}'
 expect 0 validate cut.json
 
+# One of three plucks is of another string, so that nothing rings as declared together: it is that one, and the others are told.
+make other short
+make else short pitch=270.2
+cp else/pluck-2.wav other/pluck-2.wav
+expect 0 diagnose other --json other.json
+says "a string of the tests: unexplained" "pluck-2 contradicts the other plucks: by itself it rings at 270.2"
+holds other.json '$d->{verdict} eq "unexplained" && $d->{mismatch}{take} eq "pluck-2"'
+
 # The plucks were made elsewhere than the rig file says.
 make moved short
 perl -i -pe 's/^position = 0\.[0-9]+/position = 0.34/m' moved/rig.toml
@@ -119,6 +127,15 @@ variant gone 's/pluck-1\.wav/nothing.wav/'
 rm gone/pluck-2.wav
 expect 2 diagnose gone
 says "pluck-1" "nothing.wav: no such file"
+variant dead ''
+perl -e 'for (@ARGV) { open my $f, "+<:raw", $_ or die; local $/; my $all = <$f>; for (my $i = 46; $i < length $all; $i += 4) { substr($all, $i, 2) = "\0\0" }
+  seek $f, 0, 0; print $f $all }' dead/*.wav
+expect 2 diagnose dead
+says "no pluck to compare with" "channel far" "silent: the channel does not move at all"
+variant folder 's/pluck-1\.wav/folder.wav/'
+mkdir -p folder/folder.wav
+expect 2 diagnose folder
+says "pluck-1" "folder.wav: is a folder"
 variant broken 's/force_N = 1.0/force_N = "much"/'
 expect 2 diagnose broken
 says "rig.toml" "force_N"

@@ -57,6 +57,19 @@ namespace detail {
   return found->score >= 0.3 && !other_string;
 }
 
+/// What is recorded of the ringing, from `start` on. True if there is anything to look at.
+[[nodiscard]] inline bool check_length(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
+  constexpr double least_periods = 10;
+  const double recorded_s =
+      static_cast<double>(s.values.size() - std::min(start, s.values.size())) / view.signals->sample_rate_Hz;
+  if (recorded_s * view.fundamental_Hz < least_periods)
+    out.add(severity::warning, "short-ringing", s.sensor.name, view.signals->time_s(start), out.duration_s,
+            "only " + figure(recorded_s, "%.4f") + " s of the ringing are recorded, " +
+                figure(recorded_s * view.fundamental_Hz, "%.1f") + " periods: that says next to nothing",
+            "record for longer after the release");
+  return start + 16 < s.values.size();
+}
+
 inline void check_tail_hum(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
   for (auto& c : out.channels)
     if (c.channel == s.sensor.name)
@@ -86,7 +99,7 @@ inline void check_force_pluck(take_check& out, const pluck_view& view) {
     const auto& s = *view.signals->find(name);
     const auto start = step->frame + static_cast<std::size_t>(view.signals->sample_rate_Hz / view.fundamental_Hz);
     if (levels) check_tail(out, view, s, *step);
-    if (start + 16 >= s.values.size()) continue;
+    if (!check_length(out, view, s, start)) continue;
     if (check_ringing(out, view, s, start)) as_declared_Hz = out.pitch_Hz;
     check_tail_hum(out, view, s, start);
     const std::size_t lead_in = step->frame - std::min(step->frame, start - step->frame);
@@ -105,7 +118,7 @@ inline void check_other_pluck(take_check& out, const pluck_view& view) {
     if (!onset) continue;
     out.release_s = view.signals->time_s(*onset);
     const auto start = *onset + static_cast<std::size_t>(4 * view.signals->sample_rate_Hz / view.fundamental_Hz);
-    if (start + 16 >= s.values.size()) continue;
+    if (!check_length(out, view, s, start)) continue;
     (void)check_ringing(out, view, s, start);
     check_tail_hum(out, view, s, start);
   }

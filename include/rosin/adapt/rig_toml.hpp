@@ -177,7 +177,9 @@ enum class take_files { required, to_be_made };
   detail::load_terminations(r, *table, log);
   for (const take& t : r.takes)
     if (wanted == take_files::required && !t.file.empty() && !std::filesystem::is_regular_file(r.path_of(t.file), ignored))
-      log.add(t.line, "take \"" + t.name + "\".file", r.path_of(t.file) + ": no such file");
+      log.add(
+          t.line, "take \"" + t.name + "\".file",
+          r.path_of(t.file) + (std::filesystem::is_directory(r.path_of(t.file), ignored) ? ": is a folder" : ": no such file"));
   if (!log.empty()) return log.to_failure();
   return r;
 }

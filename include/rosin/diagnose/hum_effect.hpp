@@ -1,11 +1,12 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// Mains hum: lines at the mains' frequency and at what rectifiers and transformers add, but for those near a partial of the
-// string; every take has its own phases. Sought in what a fit leaves: there all lines together have to take away more
-// than noise would give them,
+// Mains hum: lines at the mains' frequency and at what rectifiers and transformers add; every take has its own phases. Sought in
+// what a fit leaves: there all lines together have to take away more than noise would give them,
 //
 //     gain of ln L = (n / 2) sum over channels of ln(power before / power after)  >  k / 2 + sqrt(k / 2),   k amplitudes.
+//
+// Lines near a partial of the string do not count in that, as a partial that is off would look like them, but go with the others.
 //
 #pragma once
 
@@ -51,10 +52,14 @@ inline lines_in_rest lines_at(const take_residual& rest, const std::vector<doubl
 
 /// Parameters of a take, one multiple after the other: re and im of near, of far.
 inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
-  std::vector<double> multiples{1};
-  for (const double m : {2.0, 3.0, 4.0, 5.0, 7.0})
-    if (const double order = m * mains_Hz / f.fundamental_Hz; std::abs(order - std::max(1.0, std::round(order))) > 0.02)
-      multiples.push_back(m);
+  constexpr double clear = 0.02, apart = 0.003;  // of the pitch, from a partial
+  std::vector<double> multiples{1}, near_partials;
+  for (const double m : {2.0, 3.0, 4.0, 5.0, 7.0}) {
+    const double order = m * mains_Hz / f.fundamental_Hz, off = std::abs(order - std::max(1.0, std::round(order)));
+    if (off > apart) (off > clear ? multiples : near_partials).push_back(m);
+  }
+  const std::size_t counting = multiples.size();
+  multiples.insert(multiples.end(), near_partials.begin(), near_partials.end());
   const std::size_t of_take = 4 * multiples.size();
   pluck_effect e{.name = "mains-hum",
                  .parameters = {{"frequency_Hz", mains_Hz - 0.6, mains_Hz + 0.6, 1e-6, true}},
@@ -71,12 +76,14 @@ inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
       a += 4;
     }
   };
-  e.seek = [multiples, of_take, mains_Hz, nothing = e.starts[0]](const take_residual& rest) -> std::vector<std::vector<double>> {
-    std::vector<double> at;
+  e.seek = [multiples, counting, of_take, mains_Hz,
+            nothing = e.starts[0]](const take_residual& rest) -> std::vector<std::vector<double>> {
+    std::vector<double> at, counted;
     for (const double m : multiples) at.push_back(m * mains_Hz);
+    counted.assign(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(counting));
+    const double by_chance = 2 * static_cast<double>(counting);
+    if (!(detail::lines_at(rest, counted).gain > by_chance + std::sqrt(by_chance))) return {};
     const detail::lines_in_rest found = detail::lines_at(rest, at);
-    const double by_chance = 0.5 * static_cast<double>(of_take);
-    if (!(found.gain > by_chance + std::sqrt(by_chance))) return {};
     std::vector<double> start = nothing;
     std::copy(found.parts_N.begin(), found.parts_N.end(), start.begin() + 1 + static_cast<std::ptrdiff_t>(rest.take * of_take));
     return {start};

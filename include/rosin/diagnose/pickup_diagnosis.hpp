@@ -5,6 +5,9 @@
 //
 //     listen -> structure (glide, pairs) -> table of partials -> law (stiffness, losses, loads, supports) -> strays (hum, other strings)
 //
+// and once more from the beginning where that says where to listen: without the hum, which bends the partials that it comes near,
+// and for partials where a law foretells them that were not found near multiples.
+//
 // The likelihood falls into these parts, since frequency and decay of every partial are free in the first and everything else is
 // free in the second; so each part is searched by itself. Takes set aside are then predicted sample by sample
 // (pickup_prediction.hpp), of which only pitch and the partials' amplitudes and phases are free. The same with each partial's own
@@ -12,8 +15,10 @@
 //
 #pragma once
 
+#include <rosin/condition/low_pass.hpp>
 #include <rosin/diagnose/pickup_findings.hpp>
 #include <rosin/diagnose/pickup_prediction.hpp>
+#include <rosin/propagate/band.hpp>
 
 namespace rosin {
 
@@ -25,30 +30,59 @@ public:
       : fitted_{fitted}, held_{held}, ask_{ask} {}
 
   [[nodiscard]] outcome<pickup_diagnosis> run() {
-    hear(fitted_, ringings_, &d_.heard);
-    if (ringings_.empty()) return failure{d_.warnings.empty() ? "no pluck to listen to" : d_.warnings.back()};
-    find_structure();
-    d_.table = table_of(ringings_, d_.structure);
-    if (d_.table.lines.size() < 4) return failure{"partials: fewer than four are damped lines"};
-    hear(held_, held_ringings_, &held_heard_);
-    prepare_held();
-    find_law();
-    find_stray_lines();
+    if (const auto why = examine(fitted_, held_)) return *why;
+    foretold_ = d_.law.found.empty() ? std::vector<numbered_frequency>{} : not_found();
+    if (!foretold_.empty() || !d_.strays.hum.empty())
+      if (const auto why = examine(without_hum(fitted_, ringings_, d_.heard, d_.structure.glide),
+                                   without_hum(held_, held_ringings_, held_heard_, held_glide_)))
+        return *why;
     pickup_namer{d_, ask_}.name_all();
     judge();
     return std::move(d_);
   }
 
 private:
+  [[nodiscard]] std::optional<failure> examine(const std::vector<pickup_signal>& fitted, const std::vector<pickup_signal>& held) {
+    d_ = {}, ringings_.clear(), held_ringings_.clear(), held_heard_.clear(), held_glide_.clear(), held_tables_.clear();
+    hear(fitted, ringings_, &d_.heard);
+    if (ringings_.empty()) return failure{d_.warnings.empty() ? "no pluck to listen to" : d_.warnings.back()};
+    find_structure();
+    d_.table = table_of(ringings_, d_.structure);
+    if (d_.table.lines.size() < 4) return failure{"partials: fewer than four are damped lines"};
+    hear(held, held_ringings_, &held_heard_);
+    prepare_held();
+    find_law();
+    find_stray_lines();
+    return std::nullopt;
+  }
+  /// Partials that the law foretells among those of the table.
+  [[nodiscard]] std::vector<numbered_frequency> not_found() const {
+    std::vector<numbered_frequency> out;
+    for (const auto& l : by_law(d_.law.best.law, 0))
+      if (d_.table.find(l.number) == nullptr) out.push_back({l.number, l.pole.imag() / full_turn, 0});
+    return out;
+  }
+  [[nodiscard]] std::vector<pickup_signal> without_hum(std::vector<pickup_signal> signals,
+                                                       const std::vector<pickup_ringing>& heard,
+                                                       const std::vector<std::size_t>& which,
+                                                       const std::vector<glide_found>& glide) const {
+    std::vector<predicted_line> hum;
+    for (const auto& l : d_.strays.hum) hum.push_back({0, {0, full_turn * l.frequency_Hz}});
+    for (std::size_t i = 0; i < heard.size() && !hum.empty(); ++i) {
+      pickup_signal& s = signals[which[i]];
+      take_out_lines(s, examined(s, heard[i]), hum, by_table(0), glide_in(glide, i));
+    }
+    return signals;
+  }
+  [[nodiscard]] static judged_stretch examined(const pickup_signal& s, const pickup_ringing& r) {
+    return stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + 2));
+  }
   void hear(const std::vector<pickup_signal>& signals, std::vector<pickup_ringing>& out, std::vector<std::size_t>* which) {
     for (std::size_t i = 0; i < signals.size(); ++i) {
-      auto r = listen(signals[i], ask_.fundamental_Hz);
+      auto r = listen(signals[i], ask_.fundamental_Hz, foretold_);
       if (!r) d_.warnings.push_back(signals[i].take + ", channel " + signals[i].channel + ": not used: " + r.error());
       else out.push_back(*std::move(r)), which->push_back(i);
     }
-  }
-  [[nodiscard]] static bool power_known(const pickup_signal& s) {
-    return s.kind == pickup_kind::force || (s.kind != pickup_kind::sound && s.position > 0);
   }
 
   void find_structure() {
@@ -57,7 +91,7 @@ private:
                          ask_.is_declared("tension-modulation"),
                          ask_.is_declared("second-polarization"),
                          {}};
-    for (const std::size_t i : d_.heard) q.power_known.push_back(power_known(fitted_[i]));
+    for (const std::size_t i : d_.heard) q.power_known.push_back(fitted_[i].tells_slopes());
     d_.structures = structures_of(ringings_, q);
     d_.structure = d_.structures.front();
     if (!d_.structure.glides) return;
@@ -70,11 +104,14 @@ private:
     // so far off were simulated strings
     d_.glide_per_power = k.mean(), d_.glide_per_power_sd = std::hypot(k.sd(), 0.05 * k.mean());
   }
-  /// The glide that a ringing has by its strength.
+  /// The glide that a ringing has by its strength, and by the decays that are known of the string.
   [[nodiscard]] glide_found glide_of(const pickup_ringing& r) const {
     const auto one =
         std::find_if(d_.structure.glide.begin(), d_.structure.glide.end(), [](const auto& g) { return g.relative > 0; });
-    glide_shape shape = one->shape.number.size() > 1 || one->shape.number[0] > 0 ? shape_by_power(r) : one->shape;
+    const bool by_power = one->shape.number.size() > 1 || one->shape.number[0] > 0;
+    glide_shape shape = by_power ? shape_by_power(r) : one->shape;
+    for (std::size_t i = 0; i < shape.number.size() && by_power; ++i)
+      if (const string_line* line = d_.table.find(shape.number[i])) shape.rate_per_s[i] = 2 * line->decay_per_s;
     return {std::move(shape), d_.glide_per_power * r.strength(), 0, 0, 1};
   }
   void prepare_held() {
@@ -123,9 +160,9 @@ private:
     for (int n = 1; n < highest + 12; ++n)
       for (const double b : {0.0, 0.25, 0.5, 1.0}) own.push_back(partial_frequency(law.fundamental_Hz, b * law.inharmonicity, n));
     for (const auto& l : d_.table.lines) own.push_back(l.frequency_Hz);
-    const auto stretch = stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + 2));
-    return find_strays(left_by_lines(stretch, by_table(0), glide), s.rate_Hz, own, std::max(5.0, 0.06 * law.fundamental_Hz),
-                       d_.table.lines.back().frequency_Hz);
+    for (const auto& l : by_law(law, 0)) own.push_back(l.pole.imag() / full_turn);
+    return find_strays(left_by_lines(examined(s, r), by_table(0), glide), s.rate_Hz, own,
+                       std::max(5.0, 0.06 * law.fundamental_Hz), d_.table.lines.back().frequency_Hz);
   }
   /// What not every recording has goes.
   void keep_common(std::vector<stray_line> stray_lines::*kind, const std::vector<stray_lines>& each) {
@@ -190,9 +227,15 @@ private:
     d_.own_poles = overall([](const auto& j) { return j.own_poles; });
     decide();
   }
+  /// Up to the partials of the table: of those above nothing is foretold.
+  [[nodiscard]] pickup_signal in_band(pickup_signal s) const {
+    const double f0 = d_.law.declared.law.fundamental_Hz, top = d_.table.lines.back().frequency_Hz;
+    s.values = low_pass<double>(s.values, s.rate_Hz, band{top + 0.1 * f0, top + 0.9 * f0});
+    return s;
+  }
   [[nodiscard]] judged_ringing judged(std::size_t i, double offset) const {
     const auto& r = held_ringings_[i];
-    const auto& s = held_[held_heard_[i]];
+    const auto s = in_band(held_[held_heard_[i]]);
     const auto stretch = stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + ask_.longest_s));
     const glide_found* glide = glide_in(held_glide_, i);
     judged_ringing j{s.take, s.channel, s.rate_Hz, r.start_s, 0, rms_level(stretch.x), {}, {}, 0};
@@ -241,6 +284,7 @@ private:
   std::vector<std::size_t> held_heard_;
   std::vector<glide_found> held_glide_;
   std::vector<line_table> held_tables_;
+  std::vector<numbered_frequency> foretold_;  ///< where to listen besides
 };
 
 }  // namespace detail

@@ -107,7 +107,8 @@ inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_ta
 
 }  // namespace detail
 
-/// The law with one effect more, from the three likeliest places on.
+/// The law with one effect more, from the three likeliest places on. What a load makes of the string's loss is a matter of
+/// convention: both are tried.
 [[nodiscard]] inline fitted_law with_effect(const line_table& table, const fitted_law& base, const law_effect& e) {
   const auto starts = detail::likeliest_places(table, base, e);
   std::vector<law_parameter> parameters = base.parameters;
@@ -115,13 +116,16 @@ inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_ta
   fitted_law best = base;
   best.log_likelihood = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < std::min<std::size_t>(3, starts.size()); ++i)
-    for (const double share : {1.0, 0.3}) {
-      pickup_law at = starts[i].second;
-      at.*e.strength = std::min(at.*e.strength * share, e.parameters.back().high);
-      if (fitted_law f = detail::law_problem(table, parameters, base.in_proportion).fit(at);
-          f.log_likelihood > best.log_likelihood)
-        best = f;
-    }
+    for (const double share : {1.0, 0.3})
+      for (const double loaded : {0.0, 1.0}) {
+        pickup_law at = starts[i].second;
+        at.*e.strength = std::min(at.*e.strength * share, e.parameters.back().high);
+        at.loaded_loss = loaded;
+        if (loaded != base.law.loaded_loss && e.places.size() == 1) continue;
+        if (fitted_law f = detail::law_problem(table, parameters, base.in_proportion).fit(at);
+            f.log_likelihood > best.log_likelihood)
+          best = f;
+      }
   if (std::isfinite(best.log_likelihood)) return fit_law(table, parameters, best.law);
   best.parameters = parameters, best.log_likelihood = base.log_likelihood;  // nothing of it anywhere
   best.sd = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));

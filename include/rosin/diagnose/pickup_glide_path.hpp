@@ -121,10 +121,31 @@ private:
 
 }  // namespace detail
 
+namespace detail {
+
+/// A line that glides looks as if it died sooner: the powers fall as the lines do without the glide, and that makes it another
+/// one.
+inline glide_found with_own_rates(const pickup_ringing& r, glide_found g, double detuning) {
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds && g.relative > 0; ++round) {
+    glide_shape shape = g.shape;
+    for (std::size_t k = 0; k < r.tracks.size(); ++k) {
+      const partial_track& t = r.tracks[k];
+      const double decay =
+          without_glide(t, path_along(g.shape, t), g.relative, 1.5 * r.tolerance_Hz).fit.model.parts[0].decay_per_s;
+      if (decay > 0) shape.rate_per_s[k] = 2 * decay;
+    }
+    g = glide_search(r, shape, detuning).best(g.relative);
+  }
+  return g;
+}
+
+}  // namespace detail
+
 /// The likelier of the shapes; `power_known`: the sensor tells the powers, and no other shape is asked for. detuning: of pairs,
 /// or 0.
 [[nodiscard]] inline glide_found find_glide(const pickup_ringing& r, bool power_known, double detuning = 0) {
-  glide_found best = detail::glide_search(r, shape_by_power(r), detuning).best();
+  glide_found best = detail::with_own_rates(r, detail::glide_search(r, shape_by_power(r), detuning).best(), detuning);
   if (power_known) return best;
   const double rate = detail::glide_decay(r.tracks);
   for (const double factor : {1.0, 0.4, 2.5}) {

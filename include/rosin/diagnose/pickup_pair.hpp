@@ -161,6 +161,15 @@ inline double pair_gain(const std::vector<const partial_track*>& tracks, double 
   return sum;
 }
 
+/// The other line against the main one as they are in the recording: the track's window passes what is off its centre by less.
+inline std::complex<double> ratio_of(const partial_track& t, const line_pair& p, std::size_t main) {
+  const auto recorded = [&](std::size_t which) {
+    const double detuning = p.detuning_rad_s + (which == 1 ? p.shift_rad_s : 0);
+    return p.amplitude[which] / t.window(std::complex<double>{detuning, p.decay_per_s} / full_turn);
+  };
+  return recorded(1 - main) / recorded(main);
+}
+
 /// The weaker line against the stronger at the release, some time before the tracks begin: the delay that makes their ratio real.
 inline void describe_coupling(const std::vector<const partial_track*>& tracks, const std::vector<line_pair>& pairs,
                               std::size_t main, pair_found& p) {
@@ -175,12 +184,12 @@ inline void describe_coupling(const std::vector<const partial_track*>& tracks, c
     const Eigen::MatrixXd information = pairs[k].information;
     sharpness.push_back(noise_of(*tracks[k]).away / 2 * information.completeOrthogonalDecomposition().pseudoInverse()(2, 2));
   }
-  for (double delay = 0.01; delay < 0.4; delay += 0.002) {
+  for (double delay = 0.01; delay < 0.4; delay += 0.0005) {
     double off = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const double turn = (main == 0 ? -1 : 1) * pairs[k].shift_rad_s * delay, power = std::norm(pairs[k].amplitude[main]);
-      const auto ratio = pairs[k].amplitude[1 - main] / pairs[k].amplitude[main] * std::polar(1.0, turn);
+      const auto ratio = ratio_of(*tracks[k], pairs[k], main) * std::polar(1.0, turn);
       each.y[i] = ratio.real();
       each.variance[i] = sharpness[k] / std::max(power, 1e-300) + 1e-6;
       off += std::min(std::pow(ratio.imag(), 2) / each.variance[i], 1e3);

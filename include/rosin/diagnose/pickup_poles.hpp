@@ -4,12 +4,13 @@
 // The partials of a string with everything that a single pickup can tell of it, as poles s_n = -decay + i w in closed form.
 // With a mode number v that need not be whole, W(v) = v sqrt(1 + b v^2) the pitch in units of f0, and W' its slope,
 //
-//     sin(pi v) = i (Z Y (1 + b v^2) / W' r) cos(pi v) - i sum_loads (z r / W') sin(pi v x) sin(pi v (1 - x))
+//     sin(pi v) = i (Z Y (1 + b v^2) / W' r) [cos(pi v) - n_e sin(pi v)] - i sum_loads (z r / W') [sin(pi v x) sin(pi v (1 - x)) - n_x sin(pi v)]
 //     s = 2 pi i f0 W(v) - pi f (1/Q0 + internal f + air / sqrt(f)) - 2 f0 conductance,     r = s / (2 pi i f0 W(v))
 //
-// z is the load's impedance over the string's (bead: i pi W m/M, finger: R/Z), Y the admittance of an end. Exact for a flexible
-// string however heavy the load; stiffness enters to first order in it, as Rayleigh's quotient would have it. v is found by
-// Newton's method from n on. Masses are in masses of the string M = Z / (2 f0), so that no newton is needed anywhere.
+// z is the load's impedance over the string's (bead: i pi W m/M, finger: R/Z), Y the admittance of an end. The near field of a
+// stiff string, n_x = (1 - exp(-2 pi k x) - exp(-2 pi k (1 - x))) v / 2k and n_e = v^3 / k^3 with k^2 = v^2 + 1/b, makes it exact
+// however heavy the load (string_response.hpp). v is found by Newton's method from n on. Masses are in masses of the string
+// M = Z / (2 f0), so that no newton is needed anywhere.
 //
 #pragma once
 
@@ -23,8 +24,9 @@ namespace rosin {
 struct pickup_law {
   double fundamental_Hz = 0, inharmonicity = 0;
   double inverse_q = 0, internal_s = 0, air_sqrt_Hz = 0;
-  double conductance = 0;                                       ///< of resistive ends, both together, times Z
-  double bead_position = 0.5, bead_mass = 0;                    ///< of the string's mass
+  double conductance = 0;                     ///< of resistive ends, both together, times Z
+  double loaded_loss = 0;                     ///< 0: the string's loss is the bare string's; 1: that of the modes with all loads
+  double bead_position = 0.5, bead_mass = 0;  ///< of the string's mass
   double finger_position = 0.5, finger_resistance = 0;          ///< of Z
   double support_Hz = 1, support_q = 1, support_lightness = 0;  ///< mass of the string / mass of the support
 };
@@ -37,21 +39,26 @@ inline double pickup_loss_rate(const pickup_law& l, double f) {
          2 * l.fundamental_Hz * l.conductance;
 }
 
-/// Left side minus right side of the equation above. A lossy string's wave number goes with s + loss, its loads feel s.
+/// Left side minus right side of the equation above. A lossy string's wave number goes with s + loss, its loads feel s; where it
+/// is the modes with all loads that lose, loads are met without.
 inline std::complex<double> pickup_characteristic(const pickup_law& l, std::complex<double> v, double loss_per_s) {
   constexpr std::complex<double> i{0, 1};
   const auto stiff = 1.0 + l.inharmonicity * v * v, root = std::sqrt(stiff), slope = (1.0 + 2.0 * l.inharmonicity * v * v) / root;
-  const auto all = std::numbers::pi * v, w = v * root + i * loss_per_s / (2 * std::numbers::pi * l.fundamental_Hz),
-             lossy = w / (v * root);
-  auto value = std::sin(all);
+  const auto all = std::numbers::pi * v,
+             w = v * root + i * (1 - l.loaded_loss) * loss_per_s / (2 * std::numbers::pi * l.fundamental_Hz),
+             lossy = w / (v * root), sine = std::sin(all);
+  const auto near = std::sqrt(v * v + 1 / std::max(l.inharmonicity, 1e-24));  // the rate at which the near field fades
+  auto value = sine;
   if (l.support_lightness != 0) {
     const auto x = w * l.fundamental_Hz / l.support_Hz;  // of the support's resonance
     const auto zy =
         l.support_lightness * l.fundamental_Hz / (std::numbers::pi * l.support_Hz) * i * x / (1.0 - x * x + i * x / l.support_q);
-    value -= i * zy / lossy * stiff / slope * std::cos(all);
+    value -= i * zy / lossy * stiff / slope * (std::cos(all) - sine * std::pow(v / near, 3));
   }
   const auto load = [&](std::complex<double> z, double x) {
-    value += i * z * lossy / slope * std::sin(all * x) * std::sin(all * (1 - x));
+    const auto fading = [&](double d) { return std::exp(-2 * std::numbers::pi * near * d); };
+    const auto faded = (1.0 - fading(x) - fading(1 - x)) * v / (2.0 * near);
+    value += i * z * lossy / slope * (std::sin(all * x) * std::sin(all * (1 - x)) - faded * sine);
   };
   if (l.bead_mass != 0) load(i * std::numbers::pi * w * l.bead_mass, l.bead_position);
   if (l.finger_resistance != 0) load(l.finger_resistance, l.finger_position);

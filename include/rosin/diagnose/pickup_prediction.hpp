@@ -124,32 +124,54 @@ inline Eigen::VectorXd amplitudes_by(const Eigen::MatrixXd& gram, const Eigen::V
 
 }  // namespace detail
 
+namespace detail {
+
+inline constexpr std::size_t line_block = 512;
+
+/// Amplitudes of the columns at the beginning of the stretch.
+inline Eigen::VectorXd fit_columns(const judged_stretch& s, const line_columns& columns, Eigen::Index n) {
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n), part;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+  for (std::size_t from = 0; from < s.x.size(); from += line_block) {
+    const std::size_t size = std::min(line_block, s.x.size() - from);
+    columns.fill(from, size, part);
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
+    right += part.transpose() * Eigen::Map<const Eigen::VectorXd>(s.x.data() + from, static_cast<Eigen::Index>(size));
+  }
+  return amplitudes_by(gram, right);
+}
+
+}  // namespace detail
+
 /// What these lines leave of it.
 [[nodiscard]] inline std::vector<double> left_by_lines(const judged_stretch& s, const std::vector<predicted_line>& lines,
                                                        const glide_found* glide = nullptr) {
-  constexpr std::size_t block = 512;
   const detail::line_columns columns(lines, glide, s.rate_Hz, s.x.size());
-  const auto n = static_cast<Eigen::Index>(2 * lines.size());
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n), part;
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-  const auto over = [&](const auto& what) {
-    for (std::size_t from = 0; from < s.x.size(); from += block) {
-      const std::size_t size = std::min(block, s.x.size() - from);
-      columns.fill(from, size, part);
-      what(from, Eigen::Map<const Eigen::VectorXd>(s.x.data() + from, static_cast<Eigen::Index>(size)));
-    }
-  };
-  over([&](std::size_t, const auto& x) {
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
-    right += part.transpose() * x;
-  });
-  const Eigen::VectorXd amplitude = detail::amplitudes_by(gram, right);
-  std::vector<double> left(s.x.size());
-  over([&](std::size_t from, const auto& x) {
-    const Eigen::VectorXd r = x - part * amplitude;
-    std::copy(r.begin(), r.end(), left.begin() + static_cast<std::ptrdiff_t>(from));
-  });
+  const Eigen::VectorXd amplitude = detail::fit_columns(s, columns, static_cast<Eigen::Index>(2 * lines.size()));
+  std::vector<double> left = s.x;
+  Eigen::MatrixXd part;
+  for (std::size_t from = 0; from < left.size(); from += detail::line_block) {
+    const std::size_t size = std::min(detail::line_block, left.size() - from);
+    columns.fill(from, size, part);
+    Eigen::Map<Eigen::VectorXd>(left.data() + from, static_cast<Eigen::Index>(size)) -= part * amplitude;
+  }
   return left;
+}
+
+/// Takes lines that last from the whole recording, as large as they are in a stretch of it beside lines that are not taken out.
+inline void take_out_lines(pickup_signal& s, const judged_stretch& stretch, const std::vector<predicted_line>& lines,
+                           std::vector<predicted_line> beside, const glide_found* glide = nullptr) {
+  const auto first = static_cast<Eigen::Index>(2 * beside.size());
+  beside.insert(beside.end(), lines.begin(), lines.end());
+  const detail::line_columns columns(beside, glide, stretch.rate_Hz, stretch.x.size());
+  const Eigen::VectorXd amplitude = detail::fit_columns(stretch, columns, static_cast<Eigen::Index>(2 * beside.size()));
+  const double begin = std::floor(stretch.start_s * s.rate_Hz);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const auto at = first + static_cast<Eigen::Index>(2 * k);
+    const std::complex<double> a{amplitude[at], amplitude[at + 1]};
+    for (std::size_t j = 0; j < s.values.size(); ++j)
+      s.values[j] -= (a * std::exp(lines[k].pole * ((static_cast<double>(j) - begin) / s.rate_Hz))).real();
+  }
 }
 
 /// The recording's own noise: the quietest of its pieces of 50 ms, of what lines that were fitted to itself leave. Noise that

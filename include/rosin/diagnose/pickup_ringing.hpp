@@ -33,6 +33,9 @@ struct pickup_signal {
   pickup_kind kind = pickup_kind::sound;
   double position = 0;                                                 ///< of the sensor, fraction of the length; 0: unknown
   double from_s = -1, to_s = std::numeric_limits<double>::infinity();  ///< to be looked at; -1: from the release on
+
+  /// Whether the slopes of the string follow from it, but for one factor.
+  [[nodiscard]] bool tells_slopes() const { return kind == pickup_kind::force || (kind != pickup_kind::sound && position > 0); }
 };
 
 /// The partials of a stretch of it.
@@ -84,8 +87,9 @@ inline double slope_weight(pickup_kind kind, double position, int n) {
   return out;
 }
 
-/// The partials between from_s and to_s. Fails as fit_pickup does.
+/// The partials between from_s and to_s, and at places where a law `foretold` some. Fails as fit_pickup does.
 [[nodiscard]] inline outcome<pickup_ringing> listen(const pickup_signal& s, double nominal_Hz,
+                                                    const std::vector<numbered_frequency>& foretold = {},
                                                     const pickup_options& options = {}) {
   if (const auto problem = detail::pickup_input_problem(s.values, s.rate_Hz, nominal_Hz, options); !problem.empty())
     return failure{problem};
@@ -101,9 +105,12 @@ inline double slope_weight(pickup_kind kind, double position, int n) {
   if (!(stop - begin > least)) return brief;
   pickup_ringing r{0, 0, begin, stop, {}, {}};
   const double seen = std::min(stop - begin, std::max(1.0, 50 / nominal_Hz));
-  const auto found =
-      find_partials(all.subspan(static_cast<std::size_t>(begin * s.rate_Hz), static_cast<std::size_t>(seen * s.rate_Hz)),
-                    s.rate_Hz, nominal_Hz, options.search_range, options.partials_at_most);
+  auto found = find_partials(all.subspan(static_cast<std::size_t>(begin * s.rate_Hz), static_cast<std::size_t>(seen * s.rate_Hz)),
+                             s.rate_Hz, nominal_Hz, options.search_range, options.partials_at_most);
+  for (const auto& partial : foretold) {
+    std::erase_if(found.partials, [&](const numbered_frequency& p) { return p.number == partial.number; });
+    found.partials.push_back(partial);
+  }
   r.fundamental_Hz = found.fundamental_Hz;
   r.tolerance_Hz = std::min(0.12 * found.fundamental_Hz, 3.0);
   r.tracks = detail::pickup_tracks(bank, found, begin, stop, options.highest_Hz, r.tolerance_Hz);

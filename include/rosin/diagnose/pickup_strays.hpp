@@ -80,10 +80,12 @@ inline void find_hum(std::span<const double> x, double rate_Hz, const peak_finde
   const detail::peak_finder peaks{residual, rate_Hz, 60};
   stray_lines out;
   out.resolution_Hz = 4 * peaks.bin_Hz();
-  const auto free = [&](double f) {
-    return std::none_of(own.begin(), own.end(), [&](double g) { return std::abs(f - g) < std::max(near_Hz, out.resolution_Hz); });
+  const auto off = [&](double f, double by_Hz) {
+    return std::none_of(own.begin(), own.end(), [&](double g) { return std::abs(f - g) < std::max(by_Hz, out.resolution_Hz); });
   };
-  detail::find_hum(residual, rate_Hz, peaks, free, out);
+  const auto free = [&](double f) { return off(f, near_Hz); };
+  detail::find_hum(
+      residual, rate_Hz, peaks, [&](double f) { return off(f, near_Hz / 3); }, out);  // as its frequencies are known
   for (double f = 30; f < highest_Hz; f += 4) {
     const auto p = peaks.strongest(f, f + 4);
     if (!p || !free(p->frequency_Hz) || p->power < 60 * peaks.floor_at(p->frequency_Hz)) continue;

@@ -123,12 +123,14 @@ inline line_table combined(const std::vector<std::vector<string_line>>& each) {
   return table;
 }
 
-/// No glide is exactly as modelled: two hundredths of what it shifted a partial while that was heard stay in the error.
+/// No glide is exactly as modelled: two hundredths of what it shifted a partial while that was heard stay in its error. Nor is the
+/// decay, as amplitudes follow the tension, which falls: four times the glide stays in that one's.
 inline void widen(std::vector<string_line>& lines, const glide_found& g) {
   if (!(g.relative > 0)) return;
   for (auto& l : lines) {
     const double heard = 0.7 / std::max(l.decay_per_s, 1e-3);
     l.frequency_sd = std::hypot(l.frequency_sd, 0.02 * l.frequency_Hz * g.relative * g.shape.path_s(l.number, heard) / heard);
+    l.decay_sd = std::hypot(l.decay_sd, 4 * g.relative * l.decay_per_s);
   }
 }
 

@@ -112,6 +112,15 @@ TEST_CASE("a pluck that is damped or missing") {
   CHECK(rosin::has_error(check(none).findings));
 }
 
+TEST_CASE("a wire that breaks at the very end") {
+  test::pluck p;
+  const auto whole = test::pluck_forces(p);
+  p.release_s = static_cast<double>(whole[0].size()) / p.rate_Hz - 0.003;
+  const auto late = check(p);
+  CHECK(late.found("short-ringing"));
+  CHECK_FALSE(rosin::has_error(late.findings));
+}
+
 TEST_CASE("a wrong position, and sensors that do not pass the level, are warnings") {
   test::pluck p;
   auto r = test::two_force_rig(p);

@@ -12,12 +12,12 @@ namespace {
 constexpr double hum_rate_Hz = 20000, hum_begin_s = 0.0123;
 
 /// Noise of 5 mN in both channels, and lines at 60 and 180 Hz.
-rosin::take_residual humming(double amplitude_N) {
+rosin::take_residual humming(double amplitude_N, double mains_Hz = 60) {
   std::mt19937 random{7};
   std::normal_distribution<double> noise{0, 0.005};
   rosin::take_residual rest{{Eigen::VectorXd(2800), Eigen::VectorXd(2800)}, hum_begin_s, hum_rate_Hz, 1, {}};
   for (Eigen::Index i = 0; i < 2800; ++i) {
-    const double t = hum_begin_s + static_cast<double>(i) / hum_rate_Hz, turn = 2 * std::numbers::pi * 60 * t;
+    const double t = hum_begin_s + static_cast<double>(i) / hum_rate_Hz, turn = 2 * std::numbers::pi * mains_Hz * t;
     const double hum = amplitude_N * (std::cos(turn + 0.7) + 0.3 * std::cos(3 * turn - 1));
     rest.residual[0][i] = hum + noise(random);
     rest.residual[1][i] = -0.5 * hum + noise(random);
@@ -64,4 +64,15 @@ TEST_CASE("hum: no line near a partial of the string") {
   CHECK(hum.parameters.size() == 1 + 4 * 5);
   // a thirtieth beside it they can be told apart: what the partial does the others tell as well
   CHECK(rosin::hum_effect({290.6, hum_rate_Hz, 9000, 0.2, 0.6, 1}, 60).parameters.size() == 1 + 4 * 6);
+}
+
+TEST_CASE("hum: a line close to a partial goes with others, and is none by itself") {
+  const rosin::string_facts facts{302.6, hum_rate_Hz, 9000, 0.2, 0.6, 3};
+  const auto hum = rosin::hum_effect(facts, 60);  // five times 60 is 0.9 % below the fundamental
+  const auto among_others = hum.seek(humming(0.004));
+  REQUIRE(among_others.size() == 1);
+  rosin::pluck_scene s;
+  hum.apply(s, among_others[0].data(), 1);
+  CHECK(std::any_of(s.hum.begin(), s.hum.end(), [](const auto& line) { return line.frequency_Hz == 300; }));
+  CHECK(hum.seek(humming(0.02, 300)).empty());
 }

@@ -9,13 +9,15 @@ using namespace rosin;
 
 namespace {
 
-pickup_diagnosis diagnosed(rosin_test::heard_string s, double force_N = 0.3) {
-  s.limit_Hz = 4000;
-  const std::vector<pickup_signal> fitted{s.pluck("one", 0.13, force_N, 1)}, held{s.pluck("two", 0.22, 1.3 * force_N, 2)};
-  const pickup_question ask{220, {}, {}, 0.8};
-  auto d = diagnose_pickups(fitted, held, ask);
+pickup_diagnosis diagnosed(const pickup_signal& fitted, const pickup_signal& held) {
+  auto d = diagnose_pickups({fitted}, {held}, {220, {}, {}, 0.8});
   REQUIRE(d);
   return *std::move(d);
+}
+
+pickup_diagnosis diagnosed(rosin_test::heard_string s, double force_N = 0.3) {
+  s.limit_Hz = 4000;
+  return diagnosed(s.pluck("one", 0.13, force_N, 1), s.pluck("two", 0.22, 1.3 * force_N, 2));
 }
 
 void check_named(const pickup_diagnosis& d, const char* effect, std::size_t which, double truth, double tolerance) {
@@ -60,4 +62,47 @@ TEST_CASE("diagnose_pickups: an effect that the catalogue is not to know ends un
   REQUIRE(d);
   CHECK(d->mismatched);
   CHECK_FALSE(d->explained);
+}
+
+TEST_CASE("diagnose_pickups: a hum close to a partial does not bend it") {
+  rosin_test::heard_string s;
+  s.fundamental_Hz = 212, s.limit_Hz = 4000, s.noise = 3e-4;
+  const auto humming = [&](pickup_signal p, double phase) {
+    for (std::size_t i = 0; i < p.values.size(); ++i)
+      for (const int h : {1, 2, 4})
+        p.values[i] += 0.004 / h * std::sin(h * 314.159265358979 * static_cast<double>(i) / s.rate_Hz + phase);
+    return p;
+  };
+  const auto d = diagnose_pickups({humming(s.pluck("one", 0.13, 0.3, 1), 1)}, {humming(s.pluck("two", 0.22, 0.4, 2), 2)},
+                                  {212, {}, {}, 0.8});
+  REQUIRE(d);
+  REQUIRE(d->missing.size() == 1);
+  CHECK(d->missing[0].effect == "mains-hum");
+  CHECK(d->strays.hum.size() == 3);
+  CHECK(d->explained);
+  CHECK(d->after < 1.3 * d->floor);
+  const auto* first = d->table.find(1);
+  REQUIRE(first != nullptr);
+  CHECK(first->decay_per_s == doctest::Approx(3.14159265358979 * 212 / s.quality).epsilon(0.01));
+}
+
+TEST_CASE("diagnose_pickups: partials that a bead has moved far off are found where it foretells them" *
+          doctest::test_suite("long")) {
+  rosin_test::heard_string s;
+  s.limit_Hz = 60000, s.steps_per_sample = 8;
+  s.burden.loads.push_back({0.433, 0.017 * s.mass_kg(), 0});
+  const auto d = diagnosed(s.pluck("one", 0.13, 0.3, 1), s.pluck("two", 0.22, 0.4, 2));
+  check_named(d, "point-mass", 1, 0.017, 0.002);
+  CHECK(d.after < 2 * d.floor);
+  for (int n = 1; n <= 12; ++n) CHECK(d.table.find(n) != nullptr);
+}
+
+TEST_CASE("diagnose_pickups: what is heard above the highest partial that is followed is no mismatch") {
+  rosin_test::heard_string s;
+  s.fundamental_Hz = 60, s.limit_Hz = 7000, s.quality = 2500, s.noise = 3e-4;
+  const auto d = diagnose_pickups({s.pluck("one", 0.13, 0.3, 1)}, {s.pluck("two", 0.22, 0.4, 2)}, {60, {}, {}, 0.8});
+  REQUIRE(d);
+  CHECK(d->table.lines.back().number <= 64);
+  CHECK(d->missing.empty());
+  CHECK_FALSE(d->mismatched);
 }

@@ -31,3 +31,15 @@ TEST_CASE("find_glide: E A of a simulated string within some per cent; none wher
   REQUIRE(steady);
   CHECK(find_glide(*steady, true).gain < 6);
 }
+
+TEST_CASE("find_glide: powers fall as the lines do without the glide") {
+  rosin_test::heard_string s;
+  s.burden.axial_stiffness_N = 9000, s.duration_s = 0.8;
+  const auto r = listen(s.pluck("a", 0.19, 2.4, 1), 220);
+  REQUIRE(r);
+  const glide_found g = find_glide(*r, true);
+  const double pi = 3.14159265358979323846;
+  REQUIRE(g.shape.number[0] == 1);
+  CHECK(g.relative > 1e-3);
+  CHECK(g.shape.rate_per_s[0] == doctest::Approx(2 * pi * 220 / s.quality).epsilon(0.03));
+}

@@ -21,6 +21,18 @@ TEST_CASE("find_pair: detuning and coupling of a string in two planes") {
   CHECK(p.agreeing > 0.8);
 }
 
+TEST_CASE("find_pair: a weak second line as strong as it is, however far from the middle of the track") {
+  rosin_test::heard_string s;
+  s.detuning = 0.006, s.coupling = 0.1;  // up to 36 Hz, where the window passes a tenth
+  const auto r = listen(s.pluck("a", 0.13, 1, 1), 220);
+  REQUIRE(r);
+  std::vector<const partial_track*> tracks;
+  for (const auto& t : r->tracks) tracks.push_back(&t);
+  const pair_found p = find_pair(tracks);
+  CHECK(p.detuning == doctest::Approx(0.006).epsilon(1e-3));
+  CHECK(p.coupling == doctest::Approx(0.1).epsilon(0.02));
+}
+
 TEST_CASE("find_pair: little to find in single lines") {
   const rosin_test::heard_string s;
   const auto r = listen(s.pluck("a", 0.13, 1, 1), 220);

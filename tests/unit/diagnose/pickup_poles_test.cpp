@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/diagnose/pickup_poles.hpp>
+#include <rosin/diagnose/string_poles.hpp>
 
 #include <doctest/doctest.h>
 
@@ -44,4 +45,46 @@ TEST_CASE("pickup_pole: an end on a resonance pulls partials towards it from bot
   CHECK(pickup_pole(l, 3).imag() < 2 * pi * 300);  // above it the end is stiffness in reverse
   CHECK(pickup_pole(l, 4).imag() > 2 * pi * 400);
   CHECK(-pickup_pole(l, 3).real() > 1.2 * pi * 300e-3);
+}
+
+TEST_CASE("pickup_pole: heavy loads on a stiff string, as its determinant has them") {
+  pickup_law l{.fundamental_Hz = 437, .inharmonicity = 1.2e-4, .inverse_q = 1e-9};
+  const auto check = [&](const pluck_scene& scene) {
+    const auto poles = string_poles(scene, 14000, 40, {});
+    for (const int n : {1, 2, 9, 20, 26}) {
+      const auto s = pickup_pole(l, n);
+      double off = 1e300;
+      for (const auto& p : poles) off = std::min(off, std::abs(p - s));
+      CHECK(off < 1e-6 * 2 * pi * 437);
+    }
+  };
+  pluck_scene plain;
+  plain.string.fundamental_Hz = 437, plain.string.inharmonicity = 1.2e-4, plain.string.loss.quality = 1e9;
+  SUBCASE("a bead") {
+    l.bead_position = 0.43, l.bead_mass = 0.016;
+    plain.scatterers.push_back({.position = 0.43, .mass_s = 0.016 / (2 * 437)});
+    check(plain);
+  }
+  SUBCASE("a finger close to an end") {
+    l.finger_position = 0.02, l.finger_resistance = 0.05;
+    plain.scatterers.push_back({.position = 0.02, .resistance = 0.05});
+    check(plain);
+  }
+  SUBCASE("an end that gives way") {
+    l.support_Hz = 3100, l.support_q = 20, l.support_lightness = 0.05;
+    plain.ends[0].modes.push_back({3100, 20, 2 * 437 * 0.05});
+    check(plain);
+  }
+}
+
+TEST_CASE("pickup_pole: modes that lose with all loads on them ring as their frequency alone has it") {
+  const pickup_law l{
+      .fundamental_Hz = 437, .inharmonicity = 1e-4, .inverse_q = 1e-3, .loaded_loss = 1, .bead_position = 0.3, .bead_mass = 0.02};
+  for (const int n : {1, 4, 9}) {
+    const auto s = pickup_pole(l, n);
+    CHECK(-2 * s.real() / s.imag() == doctest::Approx(1e-3).epsilon(1e-4));
+  }
+  pickup_law bare = l;
+  bare.loaded_loss = 0;
+  CHECK(-2 * pickup_pole(bare, 1).real() / pickup_pole(bare, 1).imag() < 0.985e-3);
 }
