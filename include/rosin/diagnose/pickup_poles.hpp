@@ -39,28 +39,32 @@ inline double pickup_loss_rate(const pickup_law& l, double f) {
          2 * l.fundamental_Hz * l.conductance;
 }
 
-/// Left side minus right side of the equation above. A lossy string's wave number goes with s + loss, its loads feel s; where it
-/// is the modes with all loads that lose, loads are met without.
+/// Left side minus right side of the equation above. A lossy string's wave number goes with s + loss, its loads feel s and a
+/// complex tension (string_response.hpp); where it is the modes with all loads that lose, loads are met without any of that.
 inline std::complex<double> pickup_characteristic(const pickup_law& l, std::complex<double> v, double loss_per_s) {
   constexpr std::complex<double> i{0, 1};
+  constexpr double pi = std::numbers::pi;
   const auto stiff = 1.0 + l.inharmonicity * v * v, root = std::sqrt(stiff), slope = (1.0 + 2.0 * l.inharmonicity * v * v) / root;
-  const auto all = std::numbers::pi * v,
-             w = v * root + i * (1 - l.loaded_loss) * loss_per_s / (2 * std::numbers::pi * l.fundamental_Hz),
-             lossy = w / (v * root), sine = std::sin(all);
+  const auto all = pi * v, sine = std::sin(all), lossless = v * root, s = i * lossless - loss_per_s / (2 * pi * l.fundamental_Hz);
   const auto near = std::sqrt(v * v + 1 / std::max(l.inharmonicity, 1e-24));  // the rate at which the near field fades
+  const double inverse_q = loss_per_s / (pi * l.fundamental_Hz * std::abs(lossless.real())), bare = 1 - l.loaded_loss,
+               own = bare * inverse_q / (2 * pi);
   auto value = sine;
   if (l.support_lightness != 0) {
-    const auto x = w * l.fundamental_Hz / l.support_Hz;  // of the support's resonance
-    const auto zy =
-        l.support_lightness * l.fundamental_Hz / (std::numbers::pi * l.support_Hz) * i * x / (1.0 - x * x + i * x / l.support_q);
-    value -= i * zy / lossy * stiff / slope * (std::cos(all) - sine * std::pow(v / near, 3));
+    const auto x = -i * s * l.fundamental_Hz / l.support_Hz;  // of the support's resonance
+    const auto zy = l.support_lightness * l.fundamental_Hz / (pi * l.support_Hz) * i * x / (1.0 - x * x + i * x / l.support_q);
+    value += zy * (lossless / s * (1.0 + i * inverse_q / 2.0) * stiff / slope * (std::cos(all) - sine * std::pow(v / near, 3)) +
+                   2 * own * sine);
   }
+  const auto met = bare == 0 ? i * lossless : s;  // what loads feel
   const auto load = [&](std::complex<double> z, double x) {
-    const auto fading = [&](double d) { return std::exp(-2 * std::numbers::pi * near * d); };
+    const auto fading = [&](double d) { return std::exp(-2 * pi * near * d); };
     const auto faded = (1.0 - fading(x) - fading(1 - x)) * v / (2.0 * near);
-    value += i * z * lossy / slope * (std::sin(all * x) * std::sin(all * (1 - x)) - faded * sine);
+    value += z * (met / lossless / (1.0 + i * bare * inverse_q / 2.0) / slope *
+                      (std::sin(all * x) * std::sin(all * (1 - x)) - faded * sine) -
+                  own * sine);
   };
-  if (l.bead_mass != 0) load(i * std::numbers::pi * w * l.bead_mass, l.bead_position);
+  if (l.bead_mass != 0) load(pi * met * l.bead_mass, l.bead_position);
   if (l.finger_resistance != 0) load(l.finger_resistance, l.finger_position);
   return value;
 }

@@ -107,13 +107,13 @@ private:
     return cost_of(nothing_found_, noise_) - nothing_found_.quality.samples[0] - nothing_found_.quality.samples[1];
   }
   /// Whether an effect takes away enough. Beside a strong one its own model's faults are worth something to others as well; but
-  /// these leave most of them. What a declared end is off by is no other mode of it.
+  /// these leave most of them, and more than noise. What a declared end is off by is no other mode of it.
   [[nodiscard]] bool is_worth(const comparison& c, const pluck_effect& e, int round) const {
     if (round == 0 && !d_.data.layout.has_ends()) return true;
-    constexpr double beyond_doubt = 300;
-    const bool much = c.was > 1e-4 * all_there_was(),
+    constexpr double beyond_doubt = 300, all_but_noise = 2;
+    const bool much = c.was > 1e-4 * all_there_was(), nearly_all = c.left < c.was / (c.temper < all_but_noise ? 15 : 30),
                at_known_end = e.at_end && e.place >= 0 && !d_.data.guess.ends[static_cast<std::size_t>(e.place)].modes.empty();
-    return c.left < c.was / 3 && (much || (!at_known_end && c.left < c.was / 30 && c.gain > beyond_doubt));
+    return c.left < c.was / 3 && (much || (!at_known_end && nearly_all && c.gain > beyond_doubt));
   }
 
   [[nodiscard]] std::vector<scene_fit> candidates(int round) const {

@@ -54,14 +54,16 @@ inline pluck_effect air_loss_effect(const string_facts&) {
           .apply = [](pluck_scene& s, const double* v, int) { s.string.loss.air_sqrt_Hz += v[0]; }};
 }
 
-/// A second plane of vibration.
+/// A second plane of vibration. Whether stiffness goes with its pitch depends on what detunes it: supports do not ask for it, a
+/// string that is not round does.
 inline pluck_effect polarisation_effect(const string_facts&) {
-  pluck_effect e{.name = "second-polarization",
-                 .parameters = {{"detuning", -0.03, 0.03, 1e-7}, {"coupling", -0.9, 0.9, 1e-5}},
-                 .strength = 1,
-                 .apply = [](pluck_scene& s, const double* v, int) { s.detuning = v[0], s.coupling = v[1]; }};
+  pluck_effect e{
+      .name = "second-polarization",
+      .parameters = {{"detuning", -0.03, 0.03, 1e-7}, {"coupling", -0.9, 0.9, 1e-5}, correction("alike", -1, 2, 1e-3)},
+      .strength = 1,
+      .apply = [](pluck_scene& s, const double* v, int) { s.detuning = v[0], s.coupling = v[1], s.detuned_alike = v[2]; }};
   for (const double d : detail::geometric(1e-4, 0.021, 1.15))
-    for (const double sign : {-1.0, 1.0}) e.starts.push_back({sign * d, 1e-3});
+    for (const double sign : {-1.0, 1.0}) e.starts.push_back({sign * d, 1e-3, 0});
   return e;
 }
 

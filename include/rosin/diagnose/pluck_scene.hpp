@@ -89,6 +89,7 @@ struct pluck_scene {
   double release_duration_s = 0;      ///< F(t) = F0 (1 + cos(pi t / d)) / 2
   double width = 0;                   ///< of the wire's grip, fraction of the length
   double detuning = 0, coupling = 0;  ///< second polarisation: (f_z - f_y) / f_y; tan tan of the two angles
+  double detuned_alike = 0;           ///< 0: as by another tension, which stiffness does not feel; 1: all partials by one ratio
   std::array<sensor_response, 2> sensors;
   double crosstalk = 0;  ///< of each channel in the other
   std::vector<hum_phasor> hum;

@@ -61,7 +61,8 @@ inline void add_polarisation(const pluck_scene& scene, std::vector<damped_line>&
   const std::size_t count = lines.size();
   for (std::size_t i = 0; i < count; ++i) {
     damped_line other = lines[i];
-    other.pole *= stretched(scene.string, std::abs(other.pole.imag()) / (2 * std::numbers::pi), scene.detuning);
+    const double by_tension = stretched(scene.string, std::abs(other.pole.imag()) / (2 * std::numbers::pi), scene.detuning);
+    other.pole *= by_tension + scene.detuned_alike * (1 + scene.detuning - by_tension);
     for (auto& r : lines[i].residue) r *= weight;
     for (auto& r : other.residue) r *= weight * c;
     lines.push_back(other);

@@ -48,18 +48,18 @@ TEST_CASE("pickup_pole: an end on a resonance pulls partials towards it from bot
 }
 
 TEST_CASE("pickup_pole: heavy loads on a stiff string, as its determinant has them") {
-  pickup_law l{.fundamental_Hz = 437, .inharmonicity = 1.2e-4, .inverse_q = 1e-9};
+  pickup_law l{.fundamental_Hz = 437, .inharmonicity = 1.2e-4, .inverse_q = 1e-3};
   const auto check = [&](const pluck_scene& scene) {
     const auto poles = string_poles(scene, 14000, 40, {});
     for (const int n : {1, 2, 9, 20, 26}) {
       const auto s = pickup_pole(l, n);
       double off = 1e300;
       for (const auto& p : poles) off = std::min(off, std::abs(p - s));
-      CHECK(off < 1e-6 * 2 * pi * 437);
+      CHECK(off < 1e-5 * 2 * pi * 437);
     }
   };
   pluck_scene plain;
-  plain.string.fundamental_Hz = 437, plain.string.inharmonicity = 1.2e-4, plain.string.loss.quality = 1e9;
+  plain.string.fundamental_Hz = 437, plain.string.inharmonicity = 1.2e-4, plain.string.loss.quality = 1e3;
   SUBCASE("a bead") {
     l.bead_position = 0.43, l.bead_mass = 0.016;
     plain.scatterers.push_back({.position = 0.43, .mass_s = 0.016 / (2 * 437)});
@@ -86,5 +86,5 @@ TEST_CASE("pickup_pole: modes that lose with all loads on them ring as their fre
   }
   pickup_law bare = l;
   bare.loaded_loss = 0;
-  CHECK(-2 * pickup_pole(bare, 1).real() / pickup_pole(bare, 1).imag() < 0.985e-3);
+  CHECK(-2 * pickup_pole(bare, 1).real() / pickup_pole(bare, 1).imag() < 0.99e-3);
 }

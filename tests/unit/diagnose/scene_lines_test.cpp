@@ -66,3 +66,18 @@ TEST_CASE("crosstalk mixes, a skew turns, and two planes share the force") {
   CHECK(both.size() == 2 * bare.size());
   CHECK(at(both, 0, 0) == doctest::Approx(at(bare, 0, 0)).epsilon(1e-3));
 }
+
+TEST_CASE("a second plane whose stiffness is detuned as well has all partials by one ratio, else high ones by less") {
+  auto with = lines_scene();
+  with.string.inharmonicity = 1e-3, with.detuning = 4e-3, with.coupling = 0.2;
+  const auto ratio = [&](std::size_t n) {
+    const auto lines = rosin::scene_lines(with, 0.3, upper_band, 100, {});
+    return lines[lines.size() / 2 + n].pole.imag() / lines[n].pole.imag() - 1;
+  };
+  with.detuned_alike = 1;
+  CHECK(ratio(0) == doctest::Approx(4e-3).epsilon(1e-9));
+  CHECK(ratio(19) == doctest::Approx(4e-3).epsilon(1e-9));
+  with.detuned_alike = 0;
+  CHECK(ratio(0) == doctest::Approx(4e-3).epsilon(2e-3));
+  CHECK(ratio(19) == doctest::Approx(4e-3 / 1.4).epsilon(0.01));  // b n^2 = 0.4
+}
