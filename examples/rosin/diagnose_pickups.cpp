@@ -221,7 +221,10 @@ rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provena
   const std::vector<std::string> declared = rig.model ? rig.model->physics : std::vector<std::string>{};
   const auto found = rosin::diagnose_pickups(plucks->fitted, plucks->held, {rig.string.fundamental_Hz, declared, without});
   if (!found) return failed(rig.file + ": " + found.error(), d.warnings);
-  if (found->judged.empty()) return failed(rig.file + ": no take that was set aside could be heard", found->warnings);
+  if (found->judged.empty()) {
+    d.warnings.insert(d.warnings.end(), found->warnings.begin(), found->warnings.end());
+    return failed(rig.file + ": no take that was set aside could be heard", d.warnings);
+  }
   take_over(*found, values, *plucks, d);
   own_up(rig, *found, *plucks, d);
   return d;

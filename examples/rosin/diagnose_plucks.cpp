@@ -57,8 +57,7 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
   if (!found) {  // of one of another string or pitch nothing rings as declared together
     auto odd = rosin::find_odd_pluck(plucks->takes, plucks->held, told, plucks->options, catalogue);
     if (!odd) return failed(found.error(), plucks->warnings);
-    rosin::pluck_diagnosis others = odd->others;
-    return plucks_told{std::move(others), *std::move(odd)};
+    return plucks_told{odd->others, std::move(odd)};
   }
   if (!found->explained)
     if (auto both = by_both(*plucks, catalogue)) {

@@ -175,11 +175,12 @@ enum class take_files { required, to_be_made };
   problem_log log{file};
   rig r = detail::read_root(*table, file, log);
   detail::load_terminations(r, *table, log);
-  for (const take& t : r.takes)
-    if (wanted == take_files::required && !t.file.empty() && !std::filesystem::is_regular_file(r.path_of(t.file), ignored))
-      log.add(
-          t.line, "take \"" + t.name + "\".file",
-          r.path_of(t.file) + (std::filesystem::is_directory(r.path_of(t.file), ignored) ? ": is a folder" : ": no such file"));
+  for (const take& t : r.takes) {
+    if (wanted != take_files::required || t.file.empty()) continue;
+    const auto recording = r.path_of(t.file), key = "take \"" + t.name + "\".file";
+    if (std::filesystem::is_directory(recording, ignored)) log.add(t.line, key, recording + ": is a folder");
+    else if (!std::filesystem::is_regular_file(recording, ignored)) log.add(t.line, key, recording + ": no such file");
+  }
   if (!log.empty()) return log.to_failure();
   return r;
 }

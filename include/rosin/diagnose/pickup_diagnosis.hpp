@@ -33,9 +33,9 @@ public:
     if (const auto why = examine(fitted_, held_)) return *why;
     foretold_ = d_.law.found.empty() ? std::vector<numbered_frequency>{} : not_found();
     if (!foretold_.empty() || !d_.strays.hum.empty())
-      if (const auto why = examine(without_hum(fitted_, ringings_, d_.heard, d_.structure.glide),
-                                   without_hum(held_, held_ringings_, held_heard_, held_glide_)))
-        return *why;
+      if (examine(without_hum(fitted_, ringings_, d_.heard, d_.structure.glide),
+                  without_hum(held_, held_ringings_, held_heard_, held_glide_)))
+        foretold_.clear(), (void)examine(fitted_, held_);  // what could be heard before
     pickup_namer{d_, ask_}.name_all();
     judge();
     return std::move(d_);

@@ -117,11 +117,10 @@ inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_ta
   best.log_likelihood = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < std::min<std::size_t>(3, starts.size()); ++i)
     for (const double share : {1.0, 0.3})
-      for (const double loaded : {0.0, 1.0}) {
+      for (const double loaded : e.places.size() > 1 ? std::vector{0.0, 1.0} : std::vector{base.law.loaded_loss}) {
         pickup_law at = starts[i].second;
         at.*e.strength = std::min(at.*e.strength * share, e.parameters.back().high);
         at.loaded_loss = loaded;
-        if (loaded != base.law.loaded_loss && e.places.size() == 1) continue;
         if (fitted_law f = detail::law_problem(table, parameters, base.in_proportion).fit(at);
             f.log_likelihood > best.log_likelihood)
           best = f;

@@ -180,8 +180,10 @@ inline void describe_coupling(const std::vector<const partial_track*>& tracks, c
   };
   double least = std::numeric_limits<double>::infinity();
   std::vector<double> sharpness;  // what an amplitude's variance is, per noise
+  std::vector<std::complex<double>> ratios;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const Eigen::MatrixXd information = pairs[k].information;
+    ratios.push_back(ratio_of(*tracks[k], pairs[k], main));
     sharpness.push_back(noise_of(*tracks[k]).away / 2 * information.completeOrthogonalDecomposition().pseudoInverse()(2, 2));
   }
   for (double delay = 0.01; delay < 0.4; delay += 0.0005) {
@@ -189,7 +191,7 @@ inline void describe_coupling(const std::vector<const partial_track*>& tracks, c
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const double turn = (main == 0 ? -1 : 1) * pairs[k].shift_rad_s * delay, power = std::norm(pairs[k].amplitude[main]);
-      const auto ratio = ratio_of(*tracks[k], pairs[k], main) * std::polar(1.0, turn);
+      const auto ratio = ratios[k] * std::polar(1.0, turn);
       each.y[i] = ratio.real();
       each.variance[i] = sharpness[k] / std::max(power, 1e-300) + 1e-6;
       off += std::min(std::pow(ratio.imag(), 2) / each.variance[i], 1e3);

@@ -9,8 +9,8 @@ using namespace rosin;
 
 namespace {
 
-pickup_diagnosis diagnosed(const pickup_signal& fitted, const pickup_signal& held) {
-  auto d = diagnose_pickups({fitted}, {held}, {220, {}, {}, 0.8});
+pickup_diagnosis diagnosed(const pickup_signal& fitted, const pickup_signal& held, double pitch_Hz = 220) {
+  auto d = diagnose_pickups({fitted}, {held}, {pitch_Hz, {}, {}, 0.8});
   REQUIRE(d);
   return *std::move(d);
 }
@@ -73,15 +73,13 @@ TEST_CASE("diagnose_pickups: a hum close to a partial does not bend it") {
         p.values[i] += 0.004 / h * std::sin(h * 314.159265358979 * static_cast<double>(i) / s.rate_Hz + phase);
     return p;
   };
-  const auto d = diagnose_pickups({humming(s.pluck("one", 0.13, 0.3, 1), 1)}, {humming(s.pluck("two", 0.22, 0.4, 2), 2)},
-                                  {212, {}, {}, 0.8});
-  REQUIRE(d);
-  REQUIRE(d->missing.size() == 1);
-  CHECK(d->missing[0].effect == "mains-hum");
-  CHECK(d->strays.hum.size() == 3);
-  CHECK(d->explained);
-  CHECK(d->after < 1.3 * d->floor);
-  const auto* first = d->table.find(1);
+  const auto d = diagnosed(humming(s.pluck("one", 0.13, 0.3, 1), 1), humming(s.pluck("two", 0.22, 0.4, 2), 2), 212);
+  REQUIRE(d.missing.size() == 1);
+  CHECK(d.missing[0].effect == "mains-hum");
+  CHECK(d.strays.hum.size() == 3);
+  CHECK(d.explained);
+  CHECK(d.after < 1.3 * d.floor);
+  const auto* first = d.table.find(1);
   REQUIRE(first != nullptr);
   CHECK(first->decay_per_s == doctest::Approx(3.14159265358979 * 212 / s.quality).epsilon(0.01));
 }
@@ -100,9 +98,8 @@ TEST_CASE("diagnose_pickups: partials that a bead has moved far off are found wh
 TEST_CASE("diagnose_pickups: what is heard above the highest partial that is followed is no mismatch") {
   rosin_test::heard_string s;
   s.fundamental_Hz = 60, s.limit_Hz = 7000, s.quality = 2500, s.noise = 3e-4;
-  const auto d = diagnose_pickups({s.pluck("one", 0.13, 0.3, 1)}, {s.pluck("two", 0.22, 0.4, 2)}, {60, {}, {}, 0.8});
-  REQUIRE(d);
-  CHECK(d->table.lines.back().number <= 64);
-  CHECK(d->missing.empty());
-  CHECK_FALSE(d->mismatched);
+  const auto d = diagnosed(s.pluck("one", 0.13, 0.3, 1), s.pluck("two", 0.22, 0.4, 2), 60);
+  CHECK(d.table.lines.back().number <= 64);
+  CHECK(d.missing.empty());
+  CHECK_FALSE(d.mismatched);
 }
