@@ -53,7 +53,7 @@ TEST_CASE("mismatch class: what the wire does both versions agree on") {
   }
 }
 
-TEST_CASE("mismatch class: what sensors, ends and loads do they do not") {
+TEST_CASE("mismatch class: what sensors, ends and loads do they do not" * doctest::test_suite("long")) {
   rosin::rig_burden bead, leak, late, curved, support;
   bead.string.loads = {{.position = 0.73, .mass_kg = 1e-6}};
   leak.sensors.crosstalk = 0.01;
