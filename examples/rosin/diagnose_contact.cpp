@@ -18,6 +18,7 @@ constexpr double periods_in_picture = 4;
 constexpr double further_tone_share =
     0.05;  ///< of what was gained so far on the same statistic: no model of a contact is exact either,
 constexpr double further_give_share = 0.2;     ///< and what one model of its give leaves another one takes up
+constexpr double takes_most = 0.5;             ///< of the fluctuation that a further model of the contact's give finds
 constexpr double further_other_share = 0.005;  ///< of what was gained on another statistic
 constexpr double most_left = 0.5;  ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
 
@@ -85,9 +86,10 @@ void judge_by(const open_contact& open, rig_diagnosis& d) {
 /// What was gained so far, in nats, by the data that it was gained on.
 using gains_so_far = std::map<std::string, double>;
 
-/// The least that a further effect has to gain beside them.
-double least_further(const gains_so_far& sofar, const rosin::contact_hypothesis& h) {
+/// The least that a further effect has to gain beside them; what takes most of what is left needs no more than the first.
+double least_further(const gains_so_far& sofar, const rosin::contact_hypothesis& h, const rosin::contact_findings& found) {
   const bool gives = h.statistic == "stick-fluctuation" && h.effect != "speed-ripple";
+  if (gives && h.fluctuation < takes_most * found.stick_fluctuation) return 0;
   double least = 0;
   for (const auto& [data, nats] : sofar)
     least = std::max(least, nats * (data != data_of(h.statistic) ? further_other_share
@@ -117,7 +119,7 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
   }
   if (nothing) return false;
   const auto& best = found.hypotheses.front();
-  if (best.gain < least_further(sofar, best)) return false;
+  if (best.gain < least_further(sofar, best, found)) return false;
   // What explains far more, but with parameters that the strokes leave open, forbids to name the lesser.
   if (std::any_of(found.hypotheses.begin(), found.hypotheses.end(),
                   [&](const auto& h) { return !h.decided && h.gain > 2 * best.gain && h.gain > found.threshold; }))

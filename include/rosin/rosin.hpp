@@ -226,6 +226,7 @@
 #include <rosin/diagnose/strong_starts.hpp>
 #include <rosin/diagnose/sympathetic_effect.hpp>
 #include <rosin/diagnose/tension_drift.hpp>
+#include <rosin/diagnose/tone_band.hpp>
 #include <rosin/diagnose/wide_record.hpp>
 
 #include <rosin/hardware/byte_link.hpp>

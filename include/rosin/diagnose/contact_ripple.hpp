@@ -8,7 +8,7 @@
 //
 #pragma once
 
-#include <rosin/diagnose/contact_stick.hpp>
+#include <rosin/diagnose/tone_band.hpp>
 
 #include <complex>
 
@@ -77,24 +77,6 @@ struct tone_sums {
 }
 
 }  // namespace detail
-
-/// Where a tone is sought.
-struct tone_band {
-  double highest_Hz = 900;
-  double pitch_Hz = 0;  ///< of a string that repeats itself; 0: nothing does
-
-  /// Near a multiple of the pitch, or where friction flattens it to: the string's own doing. `blur_Hz`: how near, at least. From
-  /// the 14th multiple on these stretches meet.
-  [[nodiscard]] bool is_its_own(double f, double blur_Hz = 0) const noexcept {
-    if (!(pitch_Hz > 0)) return false;
-    const auto near = [&](double n) {
-      const double own = n * pitch_Hz, flat = n > 1 ? 0.05 : 0.25;
-      return f > own - std::max(flat * own, blur_Hz) && f < own + std::max(0.02 * own, blur_Hz);
-    };
-    const double below = std::floor(f / pitch_Hz);
-    return near(std::max(1.0, below)) || near(below + 1);
-  }
-};
 
 namespace detail {
 
@@ -209,13 +191,6 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
 
 }  // namespace detail
 
-/// The lowest pitch of the records' string at rest.
-[[nodiscard]] inline double lowest_pitch_Hz(const std::vector<stick_record>& records) {
-  double longest = 1e-4;
-  for (const auto& r : records) longest = std::max(longest, r.take().delay_s[0] + r.take().delay_s[1]);
-  return 0.5 / longest;
-}
-
 /// The rod's speed is not steady: a tone in the surface's velocity while it sticks, whatever the force. It sticks for most of a
 /// period, so that tones above the pitch show as well.
 [[nodiscard]] inline contact_hypothesis speed_ripple_hypothesis(stick_bench& bench) {
@@ -230,7 +205,7 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
     takes.push_back({s.residual[t], Eigen::VectorXd::Constant(rows.target.size(), speed),
                      detail::student_row_factors(s.residual[t], s.scale), rows.sample, bench.records()[t].take().rate_Hz});
   }
-  auto tone = find_tone(takes, {highest_ripple_Hz, lowest_pitch_Hz(bench.records())});
+  auto tone = find_tone(takes, {highest_ripple_Hz, pitches_of(bench)});
   if (!(tone.frequency_Hz > 0)) return detail::nothing(bench, h);
   stick_design d = bench.declared();
   bench.add_rod_tone(d, tone.frequency_Hz);

@@ -21,13 +21,12 @@ namespace rosin {
 /// Slips of all takes, and the law as declared fitted to them.
 class slip_bench {
 public:
-  /// `known_mu`: how well a coefficient of friction is known from the reconstruction, at best.
   slip_bench(stick_bench& sticks, const std::vector<contact_take>& takes)
-      : records_{slip_records(sticks, takes)}, pitch_{lowest_pitch_Hz(sticks.records())} {
+      : records_{slip_records(sticks, takes)}, pitches_{pitches_of(sticks)} {
     std::size_t samples = 0;
     for (std::size_t t = 0; t < records_.size(); ++t) {
       samples += records_[t].slips.sample.size();
-      floor_ = std::max({floor_, 0.003, 0.6 * takes[t].force_sd_N / takes[t].normal_force_N});
+      noise_ = std::max(noise_, 0.6 * takes[t].force_sd_N / takes[t].normal_force_N);
       level_sd_ = std::max(level_sd_, takes[t].level_sd_N / takes[t].normal_force_N);
     }
     usable_ = samples > 400 && std::all_of(records_.begin(), records_.end(),
@@ -38,10 +37,12 @@ public:
   }
 
   [[nodiscard]] bool usable() const noexcept { return usable_; }
-  [[nodiscard]] double floor() const noexcept { return floor_; }
+  /// What imperfect models leave of a coefficient of friction, or noise does; and what of it two laws may be told apart by.
+  [[nodiscard]] double floor() const noexcept { return std::max(0.003, noise_); }
+  [[nodiscard]] double least_floor() const noexcept { return std::max(0.001, noise_); }
   [[nodiscard]] const std::vector<slip_record>& records() const noexcept { return records_; }
   [[nodiscard]] const law_fit& declared() const noexcept { return declared_; }
-  [[nodiscard]] double pitch_Hz() const noexcept { return pitch_; }
+  [[nodiscard]] const std::vector<stroke_pitch>& pitches() const noexcept { return pitches_; }
   /// Of the mean friction coefficient, where sensors lost the force's mean.
   [[nodiscard]] double level_sd() const noexcept { return level_sd_; }
   /// The thermal law or the curve along the motion. What a known ripple of the normal force does to the force is taken out with
@@ -80,10 +81,10 @@ public:
 private:
   /// Where the mean force was lost, strokes may be off against the first by a constant.
   [[nodiscard]] law_fit fit_to(const std::vector<slip_record>& records, bool thermal) const {
-    law_fit law = thermal ? fit_thermal(records, floor_) : fit_velocity_curve(records, floor_);
+    law_fit law = thermal ? fit_thermal(records, floor()) : fit_velocity_curve(records, floor());
     if (!(level_sd_ > 0)) return law;
     detail::free_levels(law.design);
-    law.fit = fit_design(law.design, floor_);
+    law.fit = fit_design(law.design, floor());
     return law;
   }
   /// Divides the force of each take by 1 + the tone that the law leaves in it.
@@ -107,7 +108,8 @@ private:
   }
 
   std::vector<slip_record> records_;
-  double pitch_ = 0, floor_ = 0, level_sd_ = 0;
+  std::vector<stroke_pitch> pitches_;
+  double noise_ = 0, level_sd_ = 0;
   bool usable_ = false;
   std::optional<double> ripple_Hz_;
   law_fit declared_{};
@@ -115,10 +117,10 @@ private:
 
 namespace detail {
 
-inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, contact_hypothesis& h) {
+inline void settle_hypothesis(const law_fit& declared, const design_fit& fit, contact_hypothesis& h) {
   h.share = fit.share;
-  h.density = fit.density - bench.declared().fit.density;
-  h.held_out_density = fit.held_out - bench.declared().fit.held_out;
+  h.density = fit.density - declared.fit.density;
+  h.held_out_density = fit.held_out - declared.fit.held_out;
   h.gain = h.share * h.density;
   h.held_out_gain = h.share * h.held_out_density;
   h.fluctuation = fit.solution.scale;
@@ -126,14 +128,26 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
 }
 
 /// Slips may come once a period, so that a faster ripple looks like a slower one: it has to be likelier, by `rarer` nats.
-[[nodiscard]] inline tone_fit likely_tone(const std::vector<tone_rows>& takes, double pitch_Hz, double scale, double share) {
+[[nodiscard]] inline tone_fit likely_tone(const std::vector<tone_rows>& takes, const std::vector<stroke_pitch>& pitches,
+                                          double scale, double share) {
   constexpr double rarer = 10, highest_ripple_Hz = 900;
-  const tone_fit slow = find_tone(takes, {std::min(0.75 * pitch_Hz, highest_ripple_Hz)}),
-                 any = find_tone(takes, {highest_ripple_Hz, pitch_Hz});
+  double lowest_Hz = highest_ripple_Hz / 0.75;
+  for (const auto& p : pitches) lowest_Hz = std::min(lowest_Hz, p.pitch_Hz);
+  const tone_fit slow = find_tone(takes, {0.75 * lowest_Hz}), any = find_tone(takes, {highest_ripple_Hz, pitches});
   const tone_power all(takes);
   const double likelier =
       0.5 * share * all.rows * std::log(all.without(slow.explained, scale) / all.without(any.explained, scale));
   return likelier > rarer ? any : slow;
+}
+
+/// What a law leaves of each take, over what it says: rows for a tone of the normal force.
+[[nodiscard]] inline std::vector<tone_rows> left_by(const slip_bench& bench, const law_fit& law) {
+  const auto& s = law.fit.solution;
+  std::vector<tone_rows> takes;
+  for (std::size_t t = 0; t < bench.records().size(); ++t)
+    takes.push_back({s.residual[t], bench.predicted(t), student_row_factors(s.residual[t], s.scale), law.design.rows[t].sample,
+                     bench.records()[t].rate_Hz});
+  return takes;
 }
 
 }  // namespace detail
@@ -142,11 +156,8 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   contact_hypothesis h{.effect = "normal-force-ripple"};
   h.statistic = "friction-residual";
   const auto& s = bench.declared().fit.solution;
-  std::vector<tone_rows> takes;
-  for (std::size_t t = 0; t < bench.records().size(); ++t)
-    takes.push_back({s.residual[t], bench.predicted(t), detail::student_row_factors(s.residual[t], s.scale),
-                     bench.declared().design.rows[t].sample, bench.records()[t].rate_Hz});
-  auto tone = detail::likely_tone(takes, bench.pitch_Hz(), s.scale, bench.declared().fit.share);
+  const auto takes = detail::left_by(bench, bench.declared());
+  auto tone = detail::likely_tone(takes, bench.pitches(), s.scale, bench.declared().fit.share);
   if (!(tone.frequency_Hz > 0)) {
     h.decided = false, h.share = bench.declared().fit.share, h.fluctuation = bench.declared().residual();
     return h;
@@ -156,7 +167,7 @@ inline void settle_hypothesis(const slip_bench& bench, const design_fit& fit, co
   const auto fit = fit_design(d, bench.floor());
   detail::finish_tone(takes, s.scale, fit.share, tone, h);
   const double predicted = h.held_out_gain;
-  detail::settle_hypothesis(bench, fit, h);
+  detail::settle_hypothesis(bench.declared(), fit, h);
   h.held_out_gain = std::min(h.held_out_gain, predicted);
   h.held_out_density = h.held_out_gain / h.share;
   double size = 0;
@@ -207,26 +218,59 @@ namespace detail {
   return nats;
 }
 
+/// The same within each take, one half from the other; nothing where a take is not predicted better.
+[[nodiscard]] inline double predicts_halves_better(const stick_design& law, const stick_design& than, double floor) {
+  double nats = 0;
+  for (std::size_t t = 0; t < law.rows.size(); ++t) {
+    stick_design mine = law, other = than;
+    mine.rows = {law.rows[t]}, other.rows = {than.rows[t]};
+    const double here = predicts_better(mine, other, floor);
+    if (!(here > 0)) return 0;
+    nats += here;
+  }
+  return nats;
+}
+
+/// Whether a tone of the normal force accounts for as much of what the declared law leaves as a hypothesis does.
+[[nodiscard]] inline bool is_a_tone_as_well(const slip_bench& bench, const law_fit& declared, double floor,
+                                            const contact_hypothesis& h) {
+  const auto& fit = declared.fit;
+  const tone_fit tone = likely_tone(left_by(bench, declared), bench.pitches(), fit.solution.scale, fit.share);
+  if (!(tone.frequency_Hz > 0)) return false;
+  stick_design d = declared.design;
+  bench.add_tone(d, tone.frequency_Hz);
+  return fit_design(d, floor).density - fit.density > h.density;
+}
+
 }  // namespace detail
 
-/// The other law than the declared one.
+/// The other law than the declared one. What the declared curve leaves may be as little as imperfect models leave: another law has
+/// to explain it the better then, and no tone may do as well.
 [[nodiscard]] inline contact_hypothesis law_hypothesis(const slip_bench& bench) {
   const bool thermal = bench.declared().law != contact_law::thermal;
   contact_hypothesis h{.effect = thermal ? "thermal-friction" : "velocity-curve-friction"};
   h.statistic = "friction-residual";
   h.free_parameters = thermal ? 3 : 0;
-  if (thermal && bench.declared().residual() < 2 * bench.floor()) {  // nothing is left to explain
+  law_fit declared = bench.declared();
+  double floor = bench.floor();
+  const bool faint = thermal && declared.residual() < 2 * floor;
+  if (faint) floor = bench.least_floor(), declared.fit = fit_design(declared.design, floor);
+  if (thermal && declared.residual() < 2 * floor) {  // nothing is left to explain
     h.decided = false;
-    h.fluctuation = bench.declared().residual();
-    h.share = bench.declared().fit.share;
+    h.fluctuation = declared.residual();
+    h.share = declared.fit.share;
     return h;
   }
-  const law_fit other = bench.fit(thermal);
-  detail::settle_hypothesis(bench, other.fit, h);
-  h.held_out_density = detail::predicts_better(other.design, bench.declared().design, bench.floor());
+  law_fit other = bench.fit(thermal);
+  if (faint) other.fit = fit_design(other.design, floor);
+  detail::settle_hypothesis(declared, other.fit, h);
+  h.held_out_density = detail::predicts_better(other.design, declared.design, floor);
+  if (constexpr double far_less = 1.0 / 3; thermal && other.residual() < far_less * declared.residual())  // not of one material
+    h.held_out_density = std::max(h.held_out_density, detail::predicts_halves_better(other.design, declared.design, floor));
   h.held_out_gain = h.share * h.held_out_density;
   h.decided =
       other.heat_memory || (other.rates.exchange_1_m < 1.1e4 && other.rates.conduction_1_s < 4.5e3 && other.rates.renewal < 9e3);
+  if (faint && detail::is_a_tone_as_well(bench, declared, floor, h)) h.decided = false;
   if (thermal && !other.heat_memory)
     h.parameters = {{"conduction_1_s", other.rates.conduction_1_s, 0.2 * other.rates.conduction_1_s},
                     {"renewal", other.rates.renewal, 0.3 * other.rates.renewal + 100},

@@ -124,6 +124,47 @@ TEST_CASE("contact slip effects: a velocity curve as declared gains by nothing")
   CHECK(rosin::law_hypothesis(bench).gain < 20);
 }
 
+TEST_CASE("contact slip effects: heat is told as well where the curve leaves as little as imperfect models do") {
+  const rosin::contact_heat_parameters<double> heat{.layer_m = 1e-6, .area_per_newton_m2 = 3e-8};
+  const auto strength = rosin::design_yield_curve(rosin::two_exponential_curve<>{}, heat.without_string(), 0.3);
+  REQUIRE(strength);
+  const rosin::thermal_plastic<double> law{*strength, heat};
+  const auto a = contact_rigs::play(law, contact_rigs::slow(), contact_rigs::rolls, 81),
+             b = contact_rigs::play(law, contact_rigs::fast(), contact_rigs::rolls, 83);
+  std::vector<rosin::contact_take> takes{a.take(), b.take()};
+  constexpr double harder = 20;  // all coefficients of friction are so many times smaller
+  for (auto& t : takes) t.normal_force_N *= harder;
+  rosin::stick_bench sticks(takes, contact_rigs::declared());
+  const rosin::slip_bench bench(sticks, takes);
+  REQUIRE(bench.usable());
+  CHECK(bench.declared().residual() < 2 * bench.floor());
+  CHECK(bench.declared().residual() > 2 * bench.least_floor());
+  const auto h = rosin::law_hypothesis(bench);
+  CHECK(h.decided);
+  CHECK(h.gain > 100);
+  CHECK(h.held_out_gain > 50);
+  CHECK(h.fluctuation < 0.5 * bench.declared().residual());
+}
+
+TEST_CASE("contact slip effects: strokes on two materials tell of a law by their halves" * doctest::test_suite("long")) {
+  double heat = 0;
+  std::vector<rosin::slip_record> records;
+  for (const double material : {1.0, 1.5}) {
+    heat = 0;
+    records.push_back(rosin_test::slips_by_hand(1, 20000, 0.4, [&](double v, double normal_N) {
+      const double mu = material * (0.4 + 0.5 / (1 + std::pow(heat / 0.2, 4)));
+      heat = heat * std::exp(-(400 + 2500 * v) / rosin_test::slip_rate_Hz) + v * normal_N * mu * 1e3 / rosin_test::slip_rate_Hz;
+      return mu;
+    }));
+  }
+  auto curve = rosin::fit_velocity_curve(records, 1e-4), thermal = rosin::fit_thermal(records, 1e-4);
+  CHECK(rosin::detail::predicts_halves_better(thermal.design, curve.design, 1e-4) > 500);
+  CHECK(rosin::detail::predicts_halves_better(curve.design, thermal.design, 1e-4) == 0);
+  // one stroke that is not told better is enough to say no
+  thermal.design.rows[1] = curve.design.rows[1];
+  CHECK(rosin::detail::predicts_halves_better(thermal.design, curve.design, 1e-4) == 0);
+}
+
 TEST_CASE("contact slip effects: a law is asked to foretell a stroke only as far as the other one tells of it" *
           doctest::test_suite("long")) {
   // heat that fades by itself, friction that falls with it; the stronger stroke gets far hotter
