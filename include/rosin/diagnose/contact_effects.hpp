@@ -42,9 +42,13 @@ struct contact_findings {
     if (h.peculiar) return std::min(threshold, least_needed);
     return h.effect.find("ripple") != std::string::npos || h.statistic == "friction-residual" ? tone_threshold : threshold;
   }
+  /// The string sticks as well as the reconstruction lets it: torsion is as declared, as far as it shows.
+  [[nodiscard]] bool sticks_as_known() const noexcept {
+    return stick_floor > 0 && stick_fluctuation <= 1.001 * stick_bench::least_share * stick_floor;
+  }
   /// Clearly there, in all takes and in takes predicted from the others.
   [[nodiscard]] bool stands(const contact_hypothesis& h) const {
-    return h.decided && h.gain > needed(h) && h.held_out_gain > needed(h) / 2;
+    return h.decided && h.gain > needed(h) && h.held_out_gain > needed(h) / 2 && !(h.effect == "torsion" && sticks_as_known());
   }
 };
 
@@ -114,6 +118,22 @@ inline void add_stick_hypotheses(stick_bench& bench, const std::vector<contact_t
   common_share(out.hypotheses, "stick-fluctuation");
 }
 
+/// A rod that shakes as a whole ripples speed and normal force at once; of the two the one is meant that takes more of what its own
+/// statistic had.
+inline void keep_one_ripple(contact_findings& f) {
+  const auto find = [&](const char* effect) {
+    return std::find_if(f.hypotheses.begin(), f.hypotheses.end(),
+                        [&](const auto& h) { return h.effect == effect && f.stands(h) && !h.parameters.empty(); });
+  };
+  const auto speed = find("speed-ripple"), force = find("normal-force-ripple");
+  if (speed == f.hypotheses.end() || force == f.hypotheses.end()) return;
+  const auto &a = speed->parameters[0], &b = force->parameters[0];
+  if (std::abs(a.value - b.value) > std::max(3 * std::hypot(a.sd, b.sd), 1e-3 * a.value)) return;
+  const bool is_speed = speed->fluctuation * f.friction_residual < force->fluctuation * f.stick_fluctuation;
+  contact_hypothesis& other = is_speed ? *force : *speed;
+  other.decided = false, other.gain = other.held_out_gain = 0;
+}
+
 /// Whether slips last nine periods of the band's edge on the average of their samples, in every take: in less, a band-limited
 /// force is off any law.
 [[nodiscard]] inline bool slips_are_resolved(const slip_bench& bench, const std::vector<contact_take>& takes) {
@@ -174,6 +194,7 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   detail::add_slip_hypotheses(sticks, takes, out);
   out.threshold = std::max(contact_findings::least_needed, 0.035 * out.independent);
   out.tone_threshold = std::max(30.0, 0.01 * out.independent);
+  detail::keep_one_ripple(out);
   std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(),
                    [](const auto& a, const auto& b) { return a.decided != b.decided ? a.decided : a.gain > b.gain; });
   std::stable_partition(out.hypotheses.begin(), out.hypotheses.end(), [&](const auto& h) { return out.stands(h); });

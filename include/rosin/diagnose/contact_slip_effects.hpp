@@ -33,6 +33,7 @@ public:
                                            [](const auto& r) { return r.slips.sample.size() > 100 && r.normal_N > 0; });
     if (!usable_) return;
     ripple_Hz_ = sticks.model().normal_ripple_Hz;
+    if (const auto& known = sticks.model().heat) heat_ = {.layer_m = (*known)[0], .area_per_newton_m2 = (*known)[1]};
     declared_ = fit(sticks.model().law == contact_law::thermal);
   }
 
@@ -48,12 +49,13 @@ public:
   /// The thermal law or the curve along the motion. What a known ripple of the normal force does to the force is taken out with
   /// the law itself.
   [[nodiscard]] law_fit fit(bool thermal) const {
-    law_fit law = fit_to(records_, thermal);
+    law_fit law = fit_to(records_, thermal && !ripple_Hz_);
     if (!ripple_Hz_) return law;
     std::vector<slip_record> steady = records_;
-    for (int round = 0; round < 2; ++round) {
+    for (const bool last : {false, true}) {  // heat is sought once the curve has taken the most of the ripple out
       take_out_tone(law, *ripple_Hz_, steady);
       law = fit_to(steady, thermal);
+      if (last && thermal) take_out_tone(law, *ripple_Hz_, steady), law = fit_to(steady, thermal);
     }
     return law;
   }
@@ -81,7 +83,9 @@ public:
 private:
   /// Where the mean force was lost, strokes may be off against the first by a constant.
   [[nodiscard]] law_fit fit_to(const std::vector<slip_record>& records, bool thermal) const {
-    law_fit law = thermal ? fit_thermal(records, floor()) : fit_velocity_curve(records, floor());
+    law_fit law = !thermal ? fit_velocity_curve(records, floor())
+                  : heat_  ? fit_memory(records, floor(), *heat_)
+                           : fit_thermal(records, floor());
     if (!(level_sd_ > 0)) return law;
     detail::free_levels(law.design);
     law.fit = fit_design(law.design, floor());
@@ -112,6 +116,7 @@ private:
   double noise_ = 0, level_sd_ = 0;
   bool usable_ = false;
   std::optional<double> ripple_Hz_;
+  std::optional<contact_heat_parameters<double>> heat_;
   law_fit declared_{};
 };
 

@@ -18,6 +18,7 @@ namespace rosin {
 class stick_bench {
 public:
   static constexpr double passed_noise = 0.35;  ///< share of white noise's power that the window passes
+  static constexpr double least_share = 0.6;    ///< of what the reconstruction does not know, the least that a fit may see
 
   [[nodiscard]] static std::vector<stick_take> stick_takes(const std::vector<contact_take>& takes) {
     std::vector<stick_take> out;
@@ -49,7 +50,7 @@ public:
   [[nodiscard]] bool usable() const noexcept { return rows_ > 600; }
   /// How well the velocity of what sticks is known; and the least scale that a fit may see in it.
   [[nodiscard]] double doubt_m_s() const noexcept { return doubt_; }
-  [[nodiscard]] double floor_m_s() const noexcept { return 0.6 * doubt_; }
+  [[nodiscard]] double floor_m_s() const noexcept { return least_share * doubt_; }
   [[nodiscard]] const contact_model& model() const noexcept { return model_; }
   [[nodiscard]] const stick_design& declared() const noexcept { return declared_; }
   [[nodiscard]] const design_fit& fit() const noexcept { return fit_; }

@@ -53,8 +53,9 @@ struct contact_model {
   std::optional<double> bristle_stiffness_N_m{}, bristle_delay_s{};
   bristle_yield yields{};
   std::optional<double> speed_ripple_Hz{}, normal_ripple_Hz{};
-  double width_s = 0;  ///< travel time of transverse waves over a contact of some width; 0: a point
-  double edge_Hz = 0;  ///< beyond it noise takes over what is included; 0: nowhere
+  std::optional<std::array<double, 2>> heat{};  ///< layer (m) and area per newton (m^2) of a contact that remembers heat
+  double width_s = 0;                           ///< travel time of transverse waves over a contact of some width; 0: a point
+  double edge_Hz = 0;                           ///< beyond it noise takes over what is included; 0: nowhere
 };
 
 /// By how much the contact's parameters come out wrong beside what noise does, as a share of each: what band, gains and torsion
@@ -120,7 +121,10 @@ struct contact_hypothesis {
   }
   if (found.effect == "speed-ripple") model.speed_ripple_Hz = value("frequency_Hz");
   if (found.effect == "normal-force-ripple") model.normal_ripple_Hz = value("frequency_Hz");
-  if (found.effect == "thermal-friction") model.law = contact_law::thermal;
+  if (found.effect == "thermal-friction") {
+    model.law = contact_law::thermal;
+    if (value("layer_m") > 0) model.heat = {value("layer_m"), value("area_per_newton_m2")};
+  }
   return model;
 }
 

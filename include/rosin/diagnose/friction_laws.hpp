@@ -183,12 +183,23 @@ template <class Memory>
 
 }  // namespace detail
 
-/// Precondition of both fits: 200 slip samples in all.
+/// Precondition of all fits: 200 slip samples in all.
 [[nodiscard]] inline law_fit fit_velocity_curve(const std::vector<slip_record>& records, double floor) {
   std::vector<Eigen::VectorXd> x;
   for (const auto& r : records) x.push_back(r.slips.speed_m_s);
   law_fit out;
   out.design = detail::law_design(records, x, 2);
+  out.fit = fit_design(out.design, floor);
+  return out;
+}
+
+/// A contact whose heat memory is known.
+[[nodiscard]] inline law_fit fit_memory(const std::vector<slip_record>& records, double floor,
+                                        const contact_heat_parameters<double>& heat) {
+  law_fit out;
+  out.law = contact_law::thermal, out.heat_memory = true, out.heat = heat;
+  out.design = detail::memory_design(
+      records, [&](std::size_t t) { return detail::heat_along(records[t], heat); }, 2);
   out.fit = fit_design(out.design, floor);
   return out;
 }
@@ -268,11 +279,8 @@ template <class Memory>
           remember(from.layer_m * std::pow(factor, i), from.area_per_newton_m2 * std::pow(factor, j));
         if (!(best_memory < 0.999 * before)) break;
       }
-  if (best_memory < best) out.heat_memory = true, out.heat = found;
-  if (!out.heat_memory) out.design = design(out.rates, 2);
-  else
-    out.design = detail::memory_design(
-        records, [&](std::size_t t) { return detail::heat_along(records[t], out.heat); }, 2);
+  if (best_memory < best) return fit_memory(records, floor, found);
+  out.design = design(out.rates, 2);
   out.fit = fit_design(out.design, floor);
   return out;
 }

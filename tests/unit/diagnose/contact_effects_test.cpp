@@ -54,6 +54,35 @@ TEST_CASE("contact effects: what no imperfect model looks like needs no more in 
   CHECK_FALSE(found.stands(rod));
 }
 
+TEST_CASE("contact effects: torsion is as declared where the string sticks as well as the reconstruction lets it") {
+  rosin::contact_findings found;
+  found.threshold = 100, found.stick_floor = 0.01;
+  rosin::contact_hypothesis torsion{.effect = "torsion"}, rod{.effect = "rod-resonance"};
+  torsion.gain = torsion.held_out_gain = rod.gain = rod.held_out_gain = 200;
+  found.stick_fluctuation = 0.0065;
+  CHECK(found.stands(torsion));
+  found.stick_fluctuation = 0.006;
+  CHECK_FALSE(found.stands(torsion));
+  CHECK(found.stands(rod));
+}
+
+TEST_CASE("contact effects: of two ripples of one frequency the one is meant that takes more of what its statistic had") {
+  const auto findings = [](double speed_leaves, double force_leaves, double force_Hz) {
+    rosin::contact_findings f;
+    f.tone_threshold = 30, f.stick_fluctuation = 0.012, f.friction_residual = 0.046;
+    rosin::contact_hypothesis speed{.effect = "speed-ripple"}, force{.effect = "normal-force-ripple"};
+    speed.gain = speed.held_out_gain = 900, speed.fluctuation = speed_leaves, speed.parameters = {{"frequency_Hz", 169.56, 0.04}};
+    force.gain = force.held_out_gain = 500, force.fluctuation = force_leaves,
+    force.parameters = {{"frequency_Hz", force_Hz, 0.05}};
+    f.hypotheses = {speed, force};
+    rosin::detail::keep_one_ripple(f);
+    return std::pair{f.stands(f.hypotheses[0]), f.stands(f.hypotheses[1])};
+  };
+  CHECK(findings(0.0109, 0.0165, 169.6) == std::pair{false, true});
+  CHECK(findings(0.004, 0.04, 169.6) == std::pair{true, false});
+  CHECK(findings(0.0109, 0.0165, 172) == std::pair{true, true});  // each has its own
+}
+
 TEST_CASE("contact effects: takes that tell nothing are left out, with a reason") {
   const std::vector<double> few(50, 0.1);
   rosin::contact_take take;

@@ -106,7 +106,10 @@ TEST_CASE(
   CHECK(beside.effect == "thermal-friction");
   CHECK(beside.density > 1.5 * alone.density);
   CHECK(beside.fluctuation < 0.7 * curve.declared().residual());
-  rosin::stick_bench warm(takes, rosin::include(contact_rigs::declared(), alone));
+  // what was heard beside the ripple is taken for granted once it is part of the model
+  rosin::stick_bench warm(takes, rosin::include(contact_rigs::declared(), beside));
+  REQUIRE(warm.model().heat);
+  CHECK((*warm.model().heat)[0] == beside.parameters[0].value);
   const auto size = rosin::normal_ripple_hypothesis(rosin::slip_bench(warm, takes)).parameters[1].value;
   CHECK(size == doctest::Approx(0.2).epsilon(0.08));
 }
