@@ -10,6 +10,7 @@
 #include <rosin/diagnose/contact_effects.hpp>
 #include <rosin/diagnose/rattle_effect.hpp>
 #include <rosin/diagnose/tension_drift.hpp>
+#include <rosin/diagnose/width_and_drift.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
 
 namespace tool {
@@ -80,6 +81,10 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
 [[nodiscard]] rosin::contact_model declared_contact(const rosin::rig& rig);
 [[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
                                                  const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model);
+/// A width and a drift of the tension at once, where the strokes' versions part and torsion is declared.
+[[nodiscard]] std::optional<rosin::width_and_drift> width_and_drift_of(const rosin::rig& rig,
+                                                                       const std::vector<diagnosed_stroke>& strokes,
+                                                                       const rosin::pluck_diagnosis& plucks);
 
 /// One effect of the contact after the other, under strokes whose tension is the plucks' times 1 + tension_drift; true if the
 /// contact is as the model then has it. Where one was found in what sticks, that has to move by at most half of what it did, or

@@ -14,7 +14,8 @@ namespace tool {
 namespace {
 
 constexpr double loaded_drift_fault =
-    3e-4;                             ///< the same of strings with loads or yielding ends, whose noise is not told by the search
+    3e-4;  ///< the same of strings with loads or yielding ends, whose noise is not told by the search
+constexpr double wide_drift_fault = 1e-3;  ///< the same beside a contact of some width
 constexpr double drift_fault = 5e-5;  ///< beside noise, by what else the two versions part; found on rigs of two other simulators
 
 /// A converter that oversamples by four may smear a release over a quarter of its step: a variance of (T/4)^2 / 12 beside the d^2
@@ -133,13 +134,17 @@ bool drifted(const rosin::tension_drift& t) {
          t.delta_before > 0.004;
 }
 
-void add_drift(const rosin::tension_drift& t, const std::vector<diagnosed_stroke>& strokes, bool plain_string, rig_diagnosis& d) {
+missing_effect drift_by(double relative, double sd) {
   missing_effect m;
   m.effect = "tension-drift";
   m.probability = 0.999;
-  m.parameters = {{"relative", t.relative, std::hypot(t.sd, plain_string ? drift_fault : loaded_drift_fault)}};
-  m.statement = "The tension changed by " + in_digits(100 * t.relative, "%+.3g") + " % between the plucks and the strokes.";
-  d.missing.push_back(m);
+  m.parameters = {{"relative", relative, sd}};
+  m.statement = "The tension changed by " + in_digits(100 * relative, "%+.3g") + " % between the plucks and the strokes.";
+  return m;
+}
+
+void add_drift(const rosin::tension_drift& t, const std::vector<diagnosed_stroke>& strokes, bool plain_string, rig_diagnosis& d) {
+  d.missing.push_back(drift_by(t.relative, std::hypot(t.sd, plain_string ? drift_fault : loaded_drift_fault)));
   // Of the force's two versions a few hundred samples a take are independent: ln L rises by n ln(before / after).
   const double gain = 500 * std::log(t.delta_before / std::max(1e-6, t.delta_after)) / std::log(10.0);
   for (auto& r : d.ranking) r.log10_evidence -= gain;
@@ -166,6 +171,26 @@ bool stretched_by_motion(const rosin::tension_drift& t, const rosin::pluck_diagn
                                               std::exp(p.best.value[model.at(i, rosin::pluck_layout::strength)]) / tension_N,
                                               axial_N / (4 * tension_N), 1));
   return t.relative < 2 * most;
+}
+
+/// A contact of some width hides a drift, and a drift the width: both at once, where that leaves nothing open. `d`: before the
+/// contact was examined.
+std::optional<rig_diagnosis> wide_and_drifted(const rosin::rig& rig, const rosin::rig_values& values,
+                                              const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& p,
+                                              const std::vector<std::string>& without, provenance& from, rig_diagnosis d) {
+  constexpr double least_gain = 1000, sure = 5;
+  const auto both = width_and_drift_of(rig, strokes, p);
+  if (!both || both->gain < least_gain || std::abs(both->relative) < sure * std::hypot(both->sd, wide_drift_fault)) return {};
+  std::vector<std::string> said;  // once already
+  auto again = reconstruct_strokes(rig, values, p, both->relative, from, said);
+  add_lost_levels(rig, p, again);
+  const std::size_t others = d.missing.size();
+  if (!examine_contact(rig, again, p, both->relative, without, d)) return {};
+  const auto contact = d.missing.begin() + static_cast<std::ptrdiff_t>(others);
+  if (std::none_of(contact, d.missing.end(), [](const auto& m) { return m.effect == "finite-contact-width"; })) return {};
+  d.missing.insert(contact, drift_by(both->relative, std::hypot(both->sd, wide_drift_fault)));
+  d.ranking.insert(d.ranking.begin(), {{"tension-drift"}, 0.0});
+  return d;
 }
 
 void rank(rig_diagnosis& d) {
@@ -219,7 +244,11 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     }
     step();
     add_lost_levels(rig, p, strokes);
+    const rig_diagnosis before = d;
     contact_open = !examine_contact(rig, strokes, p, rise, without, d);
+    if (contact_open && rise == 0 && knows("tension-drift") && knows("finite-contact-width"))
+      if (auto both = wide_and_drifted(rig, values, strokes, p, without, from, before))
+        d = *std::move(both), contact_open = false;
   }
   rank(d);
   d.verdict = !p.explained || contact_open || !accounted ? "unexplained" : d.missing.empty() ? "no-mismatch" : "explained";

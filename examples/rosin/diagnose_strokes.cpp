@@ -161,11 +161,24 @@ rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_strok
   return t;
 }
 
-rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
-                                   const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model) {
+std::vector<rosin::contact_take> contact_takes(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
+                                               const rosin::pluck_diagnosis& plucks) {
   std::vector<rosin::contact_take> takes;
   for (const auto& s : strokes) takes.push_back(contact_take_of(rig, s, plucks));
-  return rosin::contact_hypotheses(takes, model);
+  return takes;
+}
+
+rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
+                                   const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model) {
+  return rosin::contact_hypotheses(contact_takes(rig, strokes, plucks), model);
+}
+
+std::optional<rosin::width_and_drift> width_and_drift_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
+                                                         const rosin::pluck_diagnosis& plucks) {
+  constexpr double parts = 0.1;  // a width that can be told makes the versions do so
+  const rosin::contact_model model = declared_contact(rig);
+  if (!model.torsion || std::none_of(strokes.begin(), strokes.end(), [](const auto& s) { return s.delta > parts; })) return {};
+  return rosin::find_width_and_drift(contact_takes(rig, strokes, plucks), *model.torsion);
 }
 
 std::optional<double> see_as_wide(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, double width_m,
