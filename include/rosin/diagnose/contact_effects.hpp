@@ -149,6 +149,21 @@ inline void keep_one_ripple(contact_findings& f) {
   return true;
 }
 
+/// Where the string slips with hardly any friction although the law has some, the rod has left it: the share of such samples, and
+/// the rms of what the law leaves of all.
+struct lost_touch {
+  double share = 0, left = 0;
+};
+
+[[nodiscard]] inline lost_touch loses_touch(const stick_rows& rows, const Eigen::VectorXd& residual) {
+  constexpr double hardly_any = 0.05, some = 0.15;  // coefficients of friction
+  const Eigen::Index n = rows.target.size() - (rows.shared.cols() - 2);
+  if (n < 1) return {};
+  const auto friction = rows.target.head(n).array(), left = residual.head(n).array();
+  const auto gone = friction.abs() < hardly_any && friction - left > some;
+  return {static_cast<double>(gone.count()) / static_cast<double>(n), std::sqrt(left.square().mean())};
+}
+
 inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_take>& takes, contact_findings& out) {
   const slip_bench bench(sticks, takes);
   if (!bench.usable()) {
@@ -162,6 +177,14 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   out.friction_residual = bench.declared().residual();
   out.friction_floor = bench.floor();
   out.slips_resolved = slips_are_resolved(bench, takes);
+  for (std::size_t t = 0; t < takes.size(); ++t) {
+    constexpr double seldom = 0.005;
+    const lost_touch lost = loses_touch(bench.declared().design.rows[t], bench.declared().fit.solution.residual[t]);
+    if (lost.share < seldom) continue;
+    out.warnings.push_back(takes[t].name +
+                           ": now and then friction is all but gone while the string slips: the rod seems to leave it");
+    out.friction_residual = std::max(out.friction_residual, lost.left);  // a robust measure would not see it
+  }
   for (std::size_t t = 0; t < takes.size(); ++t)
     out.slipping.push_back(trace_of(bench.declared().design.rows[t].sample, bench.declared().fit.solution.residual[t],
                                     sticks.records()[t].origin(), takes[t].rate_Hz, 1, takes[t].name));

@@ -83,6 +83,34 @@ TEST_CASE("contact effects: of two ripples of one frequency the one is meant tha
   CHECK(findings(0.0109, 0.0165, 172) == std::pair{true, true});  // each has its own
 }
 
+TEST_CASE("contact effects: a rod that leaves the string now and then is no contact as declared") {
+  const auto findings = [](double leaves_for_s) {
+    auto rod = contact_rigs::fast();
+    rod.leaves_every_s = 0.02, rod.leaves_for_s = leaves_for_s;
+    const auto a = contact_rigs::play(contact_rigs::curve(), rod, contact_rigs::rolls, 97);
+    return rosin::contact_hypotheses({a.take()}, contact_rigs::declared());
+  };
+  const auto touches = findings(0), leaves = findings(1e-3);
+  CHECK(rosin::beyond_doubt(touches).empty());
+  CHECK(touches.warnings.empty());
+  CHECK(leaves.as_declared);  // there is no name for it
+  CHECK(rosin::beyond_doubt(leaves) == "friction-residual");
+  REQUIRE(leaves.warnings.size() == 1);
+  CHECK(leaves.warnings[0].find("bow: ") == 0);
+}
+
+TEST_CASE("contact effects: friction that is gone where the law has none either is no touch that is lost") {
+  rosin::stick_rows rows;
+  rows.target = Eigen::VectorXd::Constant(103, 0.4);
+  rows.shared = Eigen::MatrixXd::Zero(103, 5);  // the last three rows keep the law smooth
+  rows.target.segment(10, 20).setConstant(0.02), rows.target.tail(3).setZero();
+  Eigen::VectorXd left = Eigen::VectorXd::Zero(103);
+  CHECK(rosin::detail::loses_touch(rows, left).share == 0);
+  left.segment(10, 10).setConstant(-0.3), left.tail(3).setConstant(-1);
+  CHECK(rosin::detail::loses_touch(rows, left).share == doctest::Approx(0.1));
+  CHECK(rosin::detail::loses_touch(rows, left).left == doctest::Approx(0.3 * std::sqrt(0.1)));
+}
+
 TEST_CASE("contact effects: takes that tell nothing are left out, with a reason") {
   const std::vector<double> few(50, 0.1);
   rosin::contact_take take;

@@ -39,14 +39,16 @@ struct stroke {
   }
 };
 
-/// A steady stroke whose speed and normal force carry tones.
+/// A steady stroke whose speed and normal force carry tones; it may leave the string at equal intervals.
 struct rippled_rod {
   rosin::steady_rod steady;
   double speed_Hz = 100, speed_relative = 0, normal_Hz = 100, normal_relative = 0;
+  double leaves_every_s = 1e9, leaves_for_s = 0;
   [[nodiscard]] rosin::rod_state operator()(double t) const noexcept {
     rosin::rod_state s = steady(t);
     s.velocity_m_s *= 1 + speed_relative * std::sin(6.283185307179586 * speed_Hz * t + 0.7);
     s.normal_force_N *= 1 + normal_relative * std::sin(6.283185307179586 * normal_Hz * t + 0.3);
+    if (std::fmod(t, leaves_every_s) > leaves_every_s - leaves_for_s) s.normal_force_N = 0;
     return s;
   }
 };
