@@ -33,16 +33,14 @@ public:
                                            [](const auto& r) { return r.slips.sample.size() > 100 && r.normal_N > 0; });
     if (!usable_) return;
     ripple_Hz_ = sticks.model().normal_ripple_Hz;
-    wide_ = sticks.model().width_s > 0;
     if (const auto& known = sticks.model().heat) heat_ = {.layer_m = (*known)[0], .area_per_newton_m2 = (*known)[1]};
     declared_ = fit(sticks.model().law == contact_law::thermal);
   }
 
   [[nodiscard]] bool usable() const noexcept { return usable_; }
-  /// What imperfect models leave of a coefficient of friction, or noise does; and what of it two laws may be told apart by: no less
-  /// beside a contact of some width, whose force is that of two places.
+  /// What imperfect models leave of a coefficient of friction, or noise does; and what of it two laws may be told apart by.
   [[nodiscard]] double floor() const noexcept { return std::max(0.003, noise_); }
-  [[nodiscard]] double least_floor() const noexcept { return wide_ ? floor() : std::max(0.001, noise_); }
+  [[nodiscard]] double least_floor() const noexcept { return std::max(0.001, noise_); }
   [[nodiscard]] const std::vector<slip_record>& records() const noexcept { return records_; }
   [[nodiscard]] const law_fit& declared() const noexcept { return declared_; }
   [[nodiscard]] const std::vector<stroke_pitch>& pitches() const noexcept { return pitches_; }
@@ -116,7 +114,7 @@ private:
   std::vector<slip_record> records_;
   std::vector<stroke_pitch> pitches_;
   double noise_ = 0, level_sd_ = 0;
-  bool usable_ = false, wide_ = false;
+  bool usable_ = false;
   std::optional<double> ripple_Hz_;
   std::optional<contact_heat_parameters<double>> heat_;
   law_fit declared_{};
