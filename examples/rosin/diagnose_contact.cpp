@@ -241,8 +241,7 @@ void settle_first(const asked_contact& ask, const rosin::contact_model& declared
 void take_up_drift(const asked_contact& ask, double tension_drift, rosin::contact_model& model, rosin::contact_findings& found) {
   if (tension_drift == 0 || !model.torsion) return;
   rosin::contact_model other = model;
-  other.torsion->speed_ratio /= std::sqrt(1 + tension_drift);
-  other.torsion->impedance_ratio /= std::sqrt(1 + tension_drift);
+  other.torsion = rosin::at_tension(*other.torsion, tension_drift);
   rosin::contact_findings with = ask(other);
   if (with.stick_fluctuation < found.stick_fluctuation) model = std::move(other), found = std::move(with);
 }

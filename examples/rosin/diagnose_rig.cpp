@@ -13,10 +13,10 @@ namespace tool {
 
 namespace {
 
+constexpr double drift_fault = 5e-5;  ///< beside noise, by what else the two versions part; found on rigs of two other simulators
 constexpr double loaded_drift_fault =
     3e-4;  ///< the same of strings with loads or yielding ends, whose noise is not told by the search
-constexpr double wide_drift_fault = 1e-3;  ///< the same beside a contact of some width
-constexpr double drift_fault = 5e-5;  ///< beside noise, by what else the two versions part; found on rigs of two other simulators
+constexpr double wide_drift_fault = 1e-3;  ///< and beside a contact of some width
 
 /// A converter that oversamples by four may smear a release over a quarter of its step: a variance of (T/4)^2 / 12 beside the d^2
 /// (1/4 - 2/pi^2) of the release itself. What that makes of the duration d.

@@ -52,10 +52,9 @@ public:
     law_fit law = fit_to(records_, thermal && !ripple_Hz_);
     if (!ripple_Hz_) return law;
     std::vector<slip_record> steady = records_;
-    for (const bool last : {false, true}) {  // heat is sought once the curve has taken the most of the ripple out
+    for (int round = thermal ? 0 : 1; round < 3; ++round) {  // heat is sought once the curve has taken the most of the ripple out
       take_out_tone(law, *ripple_Hz_, steady);
       law = fit_to(steady, thermal);
-      if (last && thermal) take_out_tone(law, *ripple_Hz_, steady), law = fit_to(steady, thermal);
     }
     return law;
   }
@@ -236,6 +235,17 @@ namespace detail {
   return nats;
 }
 
+/// What a thermal law remembers heat by.
+[[nodiscard]] inline std::vector<contact_parameter> heat_of(const law_fit& law) {
+  if (law.heat_memory)
+    return {{"layer_m", law.heat.layer_m, law.heat.layer_m},
+            {"area_per_newton_m2", law.heat.area_per_newton_m2, law.heat.area_per_newton_m2}};
+  return {{"conduction_1_s", law.rates.conduction_1_s, 0.2 * law.rates.conduction_1_s},
+          {"renewal", law.rates.renewal, 0.3 * law.rates.renewal + 100},
+          {"capacity_power", law.rates.capacity_power, 0.5},
+          {"exchange_1_m", law.rates.exchange_1_m, 0.2 * law.rates.exchange_1_m + 100}};
+}
+
 /// Whether a tone of the normal force accounts for as much of what the declared law leaves as a hypothesis does.
 [[nodiscard]] inline bool is_a_tone_as_well(const slip_bench& bench, const law_fit& declared, double floor,
                                             const contact_hypothesis& h) {
@@ -276,14 +286,7 @@ namespace detail {
   h.decided =
       other.heat_memory || (other.rates.exchange_1_m < 1.1e4 && other.rates.conduction_1_s < 4.5e3 && other.rates.renewal < 9e3);
   if (faint && detail::is_a_tone_as_well(bench, declared, floor, h)) h.decided = false;
-  if (thermal && !other.heat_memory)
-    h.parameters = {{"conduction_1_s", other.rates.conduction_1_s, 0.2 * other.rates.conduction_1_s},
-                    {"renewal", other.rates.renewal, 0.3 * other.rates.renewal + 100},
-                    {"capacity_power", other.rates.capacity_power, 0.5},
-                    {"exchange_1_m", other.rates.exchange_1_m, 0.2 * other.rates.exchange_1_m + 100}};
-  if (thermal && other.heat_memory)
-    h.parameters = {{"layer_m", other.heat.layer_m, other.heat.layer_m},
-                    {"area_per_newton_m2", other.heat.area_per_newton_m2, other.heat.area_per_newton_m2}};
+  if (thermal) h.parameters = detail::heat_of(other);
   return h;
 }
 

@@ -25,12 +25,22 @@ struct tension_drift {
   double scatter = 0;                                                 ///< between takes, of `relative`
 };
 
-/// The calibration at another tension: delays, stiffness (epsilon = B m / T^2) and impedance follow.
-[[nodiscard]] inline calibration at_tension(calibration c, double relative) {
+namespace detail {
+
+/// Delays, stiffness (epsilon = B m / T^2) and impedance follow the tension.
+template <class Point>
+void tighten(Point& at, double relative) {
   const double slower = 1 / std::sqrt(1 + relative);
-  for (double& d : c.at.delay_s) d *= slower;
-  c.at.stiffness_s2 *= std::pow(slower, 4);
-  c.at.impedance_Ns_m /= slower;
+  for (double& d : at.delay_s) d *= slower;
+  at.stiffness_s2 *= std::pow(slower, 4);
+  at.impedance_Ns_m /= slower;
+}
+
+}  // namespace detail
+
+/// The calibration at another tension.
+[[nodiscard]] inline calibration at_tension(calibration c, double relative) {
+  detail::tighten(c.at, relative);
   return c;
 }
 

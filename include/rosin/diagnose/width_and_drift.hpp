@@ -10,17 +10,13 @@
 #pragma once
 
 #include <rosin/diagnose/contact_width.hpp>
-
-#include <boost/math/tools/minima.hpp>
+#include <rosin/diagnose/tension_drift.hpp>
 
 namespace rosin {
 
-/// A take at another tension: delays, stiffness (epsilon = B m / T^2) and impedance follow; what sits on the string does not.
+/// A take at another tension; what sits on the string stays.
 [[nodiscard]] inline contact_take at_tension(contact_take take, double relative) {
-  const double slower = 1 / std::sqrt(1 + relative);
-  for (double& d : take.delay_s) d *= slower;
-  take.stiffness_s2 *= std::pow(slower, 4);
-  take.impedance_Ns_m /= slower;
+  detail::tighten(take, relative);
   return take;
 }
 
@@ -73,10 +69,12 @@ public:
   }
   [[nodiscard]] double width_at(double relative) const {
     double best = 0, least = 1e300;
-    for (double d = 3e-7; d < longest_half_delay_s(); d *= 1.2)
+    for (double d = shortest_s; d < longest_half_delay_s(); d *= 1.2)
       if (const double c = cost(d, relative); c < least) least = c, best = d;
     return std::exp(least_near([&](double log_d) { return cost(std::exp(log_d), relative); }, std::log(best), 0.2));
   }
+
+  static constexpr double shortest_s = 3e-7;  ///< half delay that is tried
 
 private:
   static constexpr double step = 0.002, most = 0.03;  ///< of drifts on the grid
@@ -102,13 +100,14 @@ private:
 
 }  // namespace detail
 
-/// Nothing where the terminations' forces are not given. Torsion: as declared, at the plucks' tension.
+/// Nothing where the terminations' forces or the rod's speed are not given, or the bow is too near an end. Torsion: as declared, at the plucks' tension.
 [[nodiscard]] inline std::optional<width_and_drift> find_width_and_drift(const std::vector<contact_take>& takes,
                                                                          const torsion_values& torsion) {
   for (const auto& t : takes)
-    if (t.near_N.size() != t.force_N.size() || t.far_N.size() != t.force_N.size()) return std::nullopt;
+    if (t.near_N.size() != t.force_N.size() || t.far_N.size() != t.force_N.size() || t.rod_speed_m_s == 0) return std::nullopt;
   if (takes.empty()) return std::nullopt;
   const detail::width_and_drift_search search(takes, torsion);
+  if (search.longest_half_delay_s() <= search.shortest_s) return std::nullopt;
   width_and_drift out;
   out.half_delay_s = search.width_at(0);
   const double plain = search.cost(out.half_delay_s, 0);

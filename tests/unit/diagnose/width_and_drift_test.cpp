@@ -50,10 +50,14 @@ TEST_CASE("width and drift: both are found at once" * doctest::test_suite("long"
   }
 }
 
-TEST_CASE("width and drift: nothing without the forces on the terminations, or without strokes") {
+TEST_CASE("width and drift: nothing without the forces on the terminations, the speed of the rod, room for a width, or strokes") {
   const drifted_strokes strokes(0);
   auto bare = strokes.takes;
   bare[1].far_N = {};
   CHECK_FALSE(rosin::find_width_and_drift(bare, drifted_strokes::declared(0)));
+  auto still = strokes.takes, at_end = strokes.takes;
+  still[0].rod_speed_m_s = 0, at_end[1].delay_s[0] = 1e-6;
+  CHECK_FALSE(rosin::find_width_and_drift(still, drifted_strokes::declared(0)));
+  CHECK_FALSE(rosin::find_width_and_drift(at_end, drifted_strokes::declared(0)));
   CHECK_FALSE(rosin::find_width_and_drift({}, drifted_strokes::declared(0)));
 }
