@@ -189,7 +189,8 @@ std::optional<rig_diagnosis> wide_and_drifted(const rosin::rig& rig, const rosin
   const auto contact = d.missing.begin() + static_cast<std::ptrdiff_t>(others);
   if (std::none_of(contact, d.missing.end(), [](const auto& m) { return m.effect == "finite-contact-width"; })) return {};
   d.missing.insert(contact, drift_by(both->relative, std::hypot(both->sd, wide_drift_fault)));
-  d.ranking.insert(d.ranking.begin(), {{"tension-drift"}, 0.0});
+  for (auto& r : d.ranking)  // of the contact all were tried at that tension
+    if (r.effects == std::vector<std::string>{"finite-contact-width"}) r.effects.insert(r.effects.begin(), "tension-drift");
   return d;
 }
 
