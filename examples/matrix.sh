@@ -2,11 +2,11 @@
 # The matrix of docs/reference/challenge.md: every effect in turn, at several strengths and levels of noise and taken out of the
 # catalogue, two effects, and none, each set under seeds of its own. On all cores, in rounds that lengthen every set, so that it
 # can be stopped and gone on with at any time:
-#   examples/matrix.sh FOLDER [ROUNDS]
+#   examples/matrix.sh FOLDER [ROUNDS [SEEDS]]
 # After 8 rounds it has 1172 rigs, 30 with each effect at full strength. ROSIN names another program than
-# build/release/bin/rosin. FOLDER/matrix.md has every set's score.
+# build/release/bin/rosin. FOLDER/matrix.md has every set's score. SEEDS: where they begin (400000); others draw other rigs.
 set -euo pipefail
-folder=${1:?folder for rigs, diagnoses and scores} rounds=${2:-8}
+folder=${1:?folder for rigs, diagnoses and scores} rounds=${2:-8} seeds=${3:-400000}
 rosin=$(realpath "${ROSIN:-$(dirname "${BASH_SOURCE[0]}")/../build/release/bin/rosin}")
 cores=$(nproc)
 effects=(bending-stiffness frequency-dependent-loss tension-modulation second-polarization point-mass point-damper support-resonance
@@ -32,13 +32,13 @@ in_turn() { # set, rigs of each effect after 8 rounds, seed of the first effect,
   "$rosin" challenge --out "$set" "$@" "${part[@]}" >/dev/null
 }
 all_sets() {
-  in_turn one 30 101000 --
-  drawn none 240 103000 --effects 0
-  drawn two 96 102000 --effects 2
-  in_turn tenth 2 106000 --strength 0.1 --
-  in_turn db50 2 105000 --noise-db 50 --
-  in_turn db40 2 104000 --noise-db 40 --
-  in_turn left 2 108000 -- --leave-out
+  in_turn one 30 $((seeds + 1000)) --
+  drawn none 240 $((seeds + 3000)) --effects 0
+  drawn two 96 $((seeds + 2000)) --effects 2
+  in_turn tenth 2 $((seeds + 6000)) --strength 0.1 --
+  in_turn db50 2 $((seeds + 5000)) --noise-db 50 --
+  in_turn db40 2 $((seeds + 4000)) --noise-db 40 --
+  in_turn left 2 $((seeds + 8000)) -- --leave-out
 }
 
 for core in $(seq "$cores"); do
