@@ -215,11 +215,12 @@ template <std::size_t N>
   // inside the range that was searched
   h.decided =
       found.size > 0 && mass < heaviest_kg && sd.size() == 3 && sd[1] < 0.3 && sd[2] < 1.5 && q > 4 && q < 0.98 * highest_q;
-  constexpr double light = 250, heavy = 2000;  // m w_0 / Z; in two hundred rigs with rigid rods the lightest one seen has 816
+  constexpr double light = 250;  // m w_0 / Z; in two hundred rigs with rigid rods the lightest one seen has 816
   const stick_take& take = bench.records().front().take();
   const double weight = mass * 2 * std::numbers::pi * f0 / take.impedance_Ns_m,
                pitch_Hz = 0.5 / (take.delay_s[0] + take.delay_s[1]);
-  if (weight > heavy && f0 / q < 0.1 * pitch_Hz) h.decided = false;  // one harmonic alone may be a fault of the string's model
+  const double heavy = q < 40 ? 2000 : 500;                           // those of rods ring shorter
+  if (weight > heavy && f0 / q < 0.12 * pitch_Hz) h.decided = false;  // one harmonic alone may be a fault of the string's model
   h.peculiar = h.decided && weight < light && !detail::is_at_torsion(bench, f0);
   return h;
 }
