@@ -212,6 +212,7 @@
 #include <rosin/diagnose/pluck_prediction.hpp>
 #include <rosin/diagnose/pluck_scene.hpp>
 #include <rosin/diagnose/pluck_score.hpp>
+#include <rosin/diagnose/pluck_search.hpp>
 #include <rosin/diagnose/rattle_effect.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/diagnose/scene_lines.hpp>

@@ -43,6 +43,7 @@ struct scene_data {
   pluck_options options;
   pluck_layout layout;
   band_kernels kernels{};
+  double most_periods = 1e9;  ///< of each recording that any fit looks at
 
   /// What is free in a fit that a fit with everything free is compared with: ends were moved along with an effect that is then
   /// taken out.
@@ -141,10 +142,9 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
                                          std::array<double, 2> noise) {
   scene_fit fit{effects, value, {}, {}, {}, {}, 0, 0, false};
   bool again = false;  // what is taken out of the recordings depends on the fit
-  for (const pluck_effect& e : effects) {
-    again = again || e.undo;
-    for (fit_stage& s : stages) s.periods = std::min(s.periods, e.horizon_periods);
-  }
+  double most_periods = data.most_periods;
+  for (const pluck_effect& e : effects) again = again || e.undo, most_periods = std::min(most_periods, e.horizon_periods);
+  for (fit_stage& s : stages) s.periods = std::min(s.periods, most_periods);
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const bool last = i + 1 == stages.size();
     for (int round = 0; round < (again ? (last ? 8 : 2) : 1); ++round) {
