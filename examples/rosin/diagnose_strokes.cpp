@@ -42,7 +42,7 @@ diagnosed_stroke recorded_stroke(const rosin::take& take, const rosin::take_sign
   s.speed_m_s = take.speed_m_s.value_or(0), s.normal_force_N = take.normal_force_N.value_or(0);
   s.calibration = calibration;
   s.recorded_N = {read.near_N(), read.far_N()};
-  rosin::undo_sensors(plucks.data, plucks.best, s.recorded_N, s.rate_Hz, limits.stop_Hz);
+  rosin::undo_sensors(plucks.data, plucks.best, s.recorded_N, calibration.at.delay_s, s.rate_Hz, limits.stop_Hz);
   s.force_N = rosin::detail::calibrated(s.calibration, s.recorded_N[0], s.recorded_N[1]);
   return s;
 }

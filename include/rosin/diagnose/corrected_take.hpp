@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Bowed takes without what the sensors did to them, once plucks have told what that is: each channel's own response divided out
-// in the frequency domain, crosstalk inverted, mains hum taken out, a curved characteristic straightened, another clock's samples
-// read at the instants of the first. Recorded nominal newtons in and out. Effects on the string itself are not undone here.
+// in the frequency domain, crosstalk inverted, mains hum taken out (in the phase that the disagreement of both ends tells), a curved
+// characteristic straightened, another clock's samples read at the instants of the first. Recorded nominal newtons in and out.
+// Effects on the string itself are not undone here.
 //
 #pragma once
 
@@ -14,23 +15,60 @@ namespace rosin {
 
 namespace detail {
 
-/// Least-squares fit of harmonics of the mains, taken out. Weighed by a Hann window: what the string plays leaks little into it.
-inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmonics, double rate_Hz) {
-  const auto n = static_cast<Eigen::Index>(x.size());
-  Eigen::MatrixXd basis(n, 2 * harmonics + 1);
-  basis.col(2 * harmonics).setOnes();
-  for (int h = 0; h < harmonics; ++h)
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double turn = 2 * std::numbers::pi * frequency_Hz * (h + 1) * static_cast<double>(i) / rate_Hz;
-      basis(i, 2 * h) = std::cos(turn), basis(i, 2 * h + 1) = std::sin(turn);
+/// A line of the hum as plucks have it, whatever its phase: frequency, and both channels' amplitudes against one another.
+struct hum_line {
+  double frequency_Hz = 0, size_N = 0;
+  std::array<std::complex<double>, 2> shape{};  ///< of length 1
+};
+
+[[nodiscard]] inline std::vector<hum_line> hum_of_plucks(const scene_data& data, const scene_fit& fit) {
+  const scene_plucks plucks(data.layout, data.guess.ac_coupled_Hz, fit.effects);
+  std::vector<std::vector<hum_phasor>> takes;
+  for (int t = 0; t < static_cast<int>(data.layout.takes()); ++t) takes.push_back(plucks.scene(fit.value, t).hum);
+  std::vector<hum_line> out;
+  for (std::size_t l = 0; !takes.empty() && l < takes[0].size(); ++l) {
+    Eigen::Matrix2cd power = Eigen::Matrix2cd::Zero();
+    for (const auto& take : takes) {
+      const Eigen::Vector2cd a(take[l].amplitude_N[0], take[l].amplitude_N[1]);
+      power += a * a.adjoint() / static_cast<double>(takes.size());
     }
-  Eigen::Map<Eigen::VectorXd> data(x.data(), n);
-  const Eigen::ArrayXd turn =
-      Eigen::ArrayXd::LinSpaced(n, 0.5, static_cast<double>(n) - 0.5) * (std::numbers::pi / static_cast<double>(n));
-  const Eigen::MatrixXd weighed = turn.sin().square().matrix().asDiagonal() * basis;
-  Eigen::VectorXd amplitude = (basis.transpose() * weighed).ldlt().solve(weighed.transpose() * data);
-  amplitude[2 * harmonics] = 0;
-  data -= basis * amplitude;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd> main(power);
+    const double size = std::sqrt(std::max(0.0, main.eigenvalues()[1]));
+    if (size > 0) out.push_back({takes[0][l].frequency_Hz, size, {main.eigenvectors()(0, 1), main.eigenvectors()(1, 1)}});
+  }
+  return out;
+}
+
+/// What a channel has at a frequency, through a Hann window: x = Re(a exp(2 pi i f t)).
+[[nodiscard]] inline std::complex<double> hann_amplitude(const std::vector<double>& x, double frequency_Hz, double rate_Hz) {
+  std::complex<double> sum = 0;
+  const double n = static_cast<double>(x.size()), turn = 2 * std::numbers::pi * frequency_Hz / rate_Hz;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double k = static_cast<double>(i), weight = std::pow(std::sin(std::numbers::pi * (k + 0.5) / n), 2);
+    sum += weight * x[i] * std::polar(1.0, -turn * k);
+  }
+  return 4.0 / n * sum;
+}
+
+/// Takes a line of the hum out of a stroke. What the bow does to a string is in both ends' forces in one proportion,
+/// F_1 sin(w tau_1) = F_2 sin(w tau_2), at such low frequencies often more than the hum itself, which is not in that proportion. It
+/// is no larger than it was.
+inline void take_out_line(std::array<std::vector<double>, 2>& x, const hum_line& line, const pluck_scene& scene,
+                          const std::array<double, 2>& gain, const std::array<double, 2>& delay_s, double rate_Hz) {
+  constexpr double at_most = 1.3;
+  const double w = 2 * std::numbers::pi * line.frequency_Hz;
+  const auto balance = [&](std::size_t c) { return std::sin(w * delay_s[c]) / scene.sensors[c]({0, w}); };
+  std::complex<double> parts = 0, would = 0;
+  for (const std::size_t c : {0U, 1U}) {
+    const auto weight = (c == 0 ? 1.0 : -1.0) * (balance(c) + scene.crosstalk * balance(1 - c)) / gain[c];
+    parts += weight * hann_amplitude(x[c], line.frequency_Hz, rate_Hz), would += weight * line.shape[c];
+  }
+  if (would == 0.0) return;
+  std::complex<double> size = parts / would;
+  size *= std::min(1.0, at_most * line.size_N / std::max(1e-300, std::abs(size)));
+  for (const std::size_t c : {0U, 1U})
+    for (std::size_t i = 0; i < x[c].size(); ++i)
+      x[c][i] -= (size * line.shape[c] * std::polar(1.0, w * static_cast<double>(i) / rate_Hz)).real();
 }
 
 }  // namespace detail
@@ -43,10 +81,11 @@ inline void take_out_hum(std::vector<double>& x, double frequency_Hz, int harmon
   });
 }
 
-/// In place, near and far.
+/// In place, near and far; `delay_s`: from the ends to where the string is bowed.
 inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::array<std::vector<double>, 2>& recorded,
-                         double rate_Hz, double edge_Hz) {
+                         const std::array<double, 2>& delay_s, double rate_Hz, double edge_Hz) {
   const pluck_scene scene = scene_of(data, fit);
+  const std::array<double, 2> gain{std::exp(fit.value[pluck_layout::gain_near]), std::exp(fit.value[pluck_layout::gain_far])};
   Eigen::Index at = data.layout.size();
   for (const pluck_effect& e : fit.effects) {
     if ((e.name == "sensor-nonlinearity" || e.name == "clock-drift") && e.undo && fit.value[at] != 0) {
@@ -57,14 +96,9 @@ inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::arra
     }
     at += static_cast<Eigen::Index>(e.parameters.size());
   }
-  if (!scene.hum.empty()) {  // more harmonics than plucks need to tell, but none near what the string itself does
-    const double mains_Hz = scene.hum.front().frequency_Hz;
-    const int harmonics = std::clamp(static_cast<int>(0.6 * scene.string.fundamental_Hz / mains_Hz), 1, 12);
-    for (auto& x : recorded) detail::take_out_hum(x, mains_Hz, harmonics, rate_Hz);
-  }
+  for (const auto& line : detail::hum_of_plucks(data, fit)) detail::take_out_line(recorded, line, scene, gain, delay_s, rate_Hz);
   if (const double c = scene.crosstalk; c != 0)
     for (std::size_t i = 0; i < recorded[0].size(); ++i) {
-      const std::array<double, 2> gain{std::exp(fit.value[pluck_layout::gain_near]), std::exp(fit.value[pluck_layout::gain_far])};
       const double near = recorded[0][i] / gain[0], far = recorded[1][i] / gain[1];
       recorded[0][i] = gain[0] * (near - c * far) / (1 - c * c);
       recorded[1][i] = gain[1] * (far - c * near) / (1 - c * c);

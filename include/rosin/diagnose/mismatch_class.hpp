@@ -89,7 +89,7 @@ inline void fit_step(plucking_force& p, std::size_t before) {
   plain.value = fit.value.head(data.layout.size());
   const calibration c = calibration_from(plain, recorded.position, 1, 0);
   auto force_N = recorded.force_N;
-  undo_sensors(data, fit, force_N, rate, limits.stop_Hz);
+  undo_sensors(data, fit, force_N, c.at.delay_s, rate, limits.stop_Hz);
   for (std::size_t end = 0; end < 2; ++end)
     for (double& x : force_N[end])
       x = (x - plain.value[data.layout.at(take, end == 0 ? pluck_layout::offset_near : pluck_layout::offset_far)]) / c.gain[end];
