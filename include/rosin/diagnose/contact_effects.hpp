@@ -173,7 +173,8 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   const auto& known = sticks.model().included;
   const auto is_known = [&](const char* effect) { return std::find(known.begin(), known.end(), effect) != known.end(); };
   if (!is_known("normal-force-ripple")) out.hypotheses.push_back(normal_ripple_hypothesis(bench));
-  if (!is_known("thermal-friction")) out.hypotheses.push_back(law_hypothesis(bench));
+  // A contact has one law of friction: that of bristles remembers as well, while they bend.
+  if (!is_known("thermal-friction") && !sticks.model().bristle_stiffness_N_m) out.hypotheses.push_back(law_hypothesis(bench));
   out.friction_residual = bench.declared().residual();
   out.friction_floor = bench.floor();
   out.slips_resolved = slips_are_resolved(bench, takes);

@@ -42,6 +42,18 @@ TEST_CASE("contact effects: torsion that the catalogue does not know shows all t
   CHECK(rosin::beyond_doubt(found, 1e3).empty());
 }
 
+TEST_CASE("contact effects: a contact of bristles is not asked for heat, as it has a law already") {
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 91);
+  const auto asked = [&](const rosin::contact_model& model) {
+    const auto found = rosin::contact_hypotheses({a.take()}, model).hypotheses;
+    return std::any_of(found.begin(), found.end(), [](const auto& h) { return h.effect == "thermal-friction"; });
+  };
+  CHECK(asked(contact_rigs::declared()));
+  const rosin::contact_hypothesis bristles{.effect = "elasto-plastic-friction",
+                                           .parameters = {{"bristle_stiffness_N_m", 3e4, 3e2}}};
+  CHECK_FALSE(asked(rosin::include(contact_rigs::declared(), bristles)));
+}
+
 TEST_CASE("contact effects: what no imperfect model looks like needs no more in a longer record") {
   rosin::contact_findings found;
   found.threshold = 200;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // On a modal string, which shares nothing with the model that is fitted.
-#include <rosin/diagnose/pluck_diagnosis.hpp>
 #include <rosin/diagnose/pluck_search.hpp>
 
 #include "plucked.hpp"
 
+#include <rosin/diagnose/pluck_diagnosis.hpp>
 #include <rosin/simulate/burdened_signals.hpp>
 
 #include <doctest/doctest.h>
