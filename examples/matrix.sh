@@ -4,9 +4,9 @@
 # can be stopped and gone on with at any time:
 #   examples/matrix.sh FOLDER [ROUNDS [SEEDS]]
 # After 8 rounds it has 1172 rigs, 30 with each effect at full strength. ROSIN names another program than
-# build/release/bin/rosin. FOLDER/matrix.md has every set's score. SEEDS: where they begin (400000); others draw other rigs.
+# build/release/bin/rosin. FOLDER/matrix.md has every set's score. SEEDS: where they begin (100000); others draw other rigs.
 set -euo pipefail
-folder=${1:?folder for rigs, diagnoses and scores} rounds=${2:-8} seeds=${3:-400000}
+folder=${1:?folder for rigs, diagnoses and scores} rounds=${2:-8} seeds=${3:-100000}
 rosin=$(realpath "${ROSIN:-$(dirname "${BASH_SOURCE[0]}")/../build/release/bin/rosin}")
 cores=$(nproc)
 effects=(bending-stiffness frequency-dependent-loss tension-modulation second-polarization point-mass point-damper support-resonance
