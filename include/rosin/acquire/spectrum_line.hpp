@@ -33,8 +33,9 @@ namespace detail {
   return out;
 }
 
-/// |sum w x e^{-i 2 pi f t}| 2 / sum w of samples that are windowed already.
-[[nodiscard]] inline double amplitude_at(const std::vector<double>& windowed, double frequency_Hz, double sample_rate_Hz) {
+/// a of x = Re{a e^{i 2 pi f t}}: (2 / sum w) sum w x e^{-i 2 pi f t} of samples that are windowed already.
+[[nodiscard]] inline std::complex<double> phasor_at(const std::vector<double>& windowed, double frequency_Hz,
+                                                    double sample_rate_Hz) {
   const double angle = -6.28318530717958647692 * frequency_Hz / sample_rate_Hz;
   const double turn_re = std::cos(angle), turn_im = std::sin(angle);
   double re = 1, im = 0, sum_re = 0, sum_im = 0;
@@ -45,7 +46,10 @@ namespace detail {
     im = re * turn_im + im * turn_re;
     re = next;
   }
-  return 2 * std::hypot(sum_re, sum_im) / static_cast<double>(windowed.size());
+  return 2 / static_cast<double>(windowed.size()) * std::complex<double>(sum_re, sum_im);
+}
+[[nodiscard]] inline double amplitude_at(const std::vector<double>& windowed, double frequency_Hz, double sample_rate_Hz) {
+  return std::abs(phasor_at(windowed, frequency_Hz, sample_rate_Hz));
 }
 
 /// Amplitudes at the bins of a transform of the windowed samples, padded to at least twice their length.

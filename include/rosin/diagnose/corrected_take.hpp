@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/acquire/spectrum_line.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/diagnose/sensor_chain.hpp>
 
@@ -39,17 +40,6 @@ struct hum_line {
   return out;
 }
 
-/// What a channel has at a frequency, through a Hann window: x = Re(a exp(2 pi i f t)).
-[[nodiscard]] inline std::complex<double> hann_amplitude(const std::vector<double>& x, double frequency_Hz, double rate_Hz) {
-  std::complex<double> sum = 0;
-  const double n = static_cast<double>(x.size()), turn = 2 * std::numbers::pi * frequency_Hz / rate_Hz;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double k = static_cast<double>(i), weight = std::pow(std::sin(std::numbers::pi * (k + 0.5) / n), 2);
-    sum += weight * x[i] * std::polar(1.0, -turn * k);
-  }
-  return 4.0 / n * sum;
-}
-
 /// Takes a line of the hum out of a stroke. What the bow does to a string is in both ends' forces in one proportion,
 /// F_1 sin(w tau_1) = F_2 sin(w tau_2), at such low frequencies often more than the hum itself, which is not in that proportion. It
 /// is no larger than it was.
@@ -61,7 +51,7 @@ inline void take_out_line(std::array<std::vector<double>, 2>& x, const hum_line&
   std::complex<double> parts = 0, would = 0;
   for (const std::size_t c : {0U, 1U}) {
     const auto weight = (c == 0 ? 1.0 : -1.0) * (balance(c) + scene.crosstalk * balance(1 - c)) / gain[c];
-    parts += weight * hann_amplitude(x[c], line.frequency_Hz, rate_Hz), would += weight * line.shape[c];
+    parts += weight * phasor_at(hann_windowed(x[c]), line.frequency_Hz, rate_Hz), would += weight * line.shape[c];
   }
   if (would == 0.0) return;
   std::complex<double> size = parts / would;

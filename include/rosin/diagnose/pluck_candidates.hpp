@@ -146,9 +146,7 @@ inline beginnings find_beginnings(const scene_data& data, const scene_fit& alrea
   beginnings out{std::vector<std::vector<scored_start>>(catalogue.size()), std::vector<bool>(catalogue.size(), false)};
   std::vector<fit_stage> looks =
       strong ? std::vector<fit_stage>{{1000, 3, true}, {1000, 8, true}, {12, 8, false}} : std::vector<fit_stage>{{}};
-  double most_periods = data.most_periods;  // no further than what is there already holds
-  for (const pluck_effect& e : already.effects) most_periods = std::min(most_periods, e.horizon_periods);
-  for (fit_stage& look : looks) look.periods = std::min(look.periods, most_periods);
+  for (fit_stage& look : looks) look.periods = std::min(look.periods, data.most_periods_with(already.effects));
   for (const fit_stage& look : looks) {
     auto problem = data.problem(already.effects, already.value, look, noise);
     Eigen::VectorXd value = already.value;

@@ -216,8 +216,8 @@ private:
 
 using search_result = std::pair<pluck_diagnosis, double>;
 
-/// `d`, searched, and the noise. What is a doubtful beginning is kept unless a search that begins otherwise leaves a ninth: one
-/// without it; one of the first periods, over which an effect can be told whose model holds no longer.
+/// `d`, searched, and the noise. What is a doubtful beginning is kept unless a search that begins otherwise leaves a ninth: one of
+/// the first periods, where that finds an effect whose model holds no longer; one without it.
 [[nodiscard]] inline search_result searched(const pluck_diagnosis& d, std::vector<pluck_effect> all, int most_effects,
                                             bool once_more = true) {
   search_result out{d, 0};
@@ -227,6 +227,7 @@ using search_result = std::pair<pluck_diagnosis, double>;
   const std::string doubtful = search.doubtful_beginning();
   if (!once_more || doubtful.empty()) return out;
   const auto excess = [](const search_result& x) { return x.first.best.quality.inflation() - 1; };
+  const auto leaves_a_ninth = [&](const search_result& other) { return excess(other) < excess(out) / 9; };
   const auto is_brief = [](const pluck_effect& e) { return e.horizon_periods < 1e8; };
   const auto brief = std::find_if(all.begin(), all.end(), is_brief);
   if (brief != all.end()) {
@@ -235,11 +236,11 @@ using search_result = std::pair<pluck_diagnosis, double>;
     auto other = searched(early, all, most_effects, false);
     other.first.data.most_periods = d.data.most_periods;
     const auto& found = other.first.best.effects;
-    if (std::any_of(found.begin(), found.end(), is_brief) && excess(other) < excess(out) / 9) return other;
+    if (std::any_of(found.begin(), found.end(), is_brief) && leaves_a_ninth(other)) return other;
   }
   std::erase_if(all, [&](const pluck_effect& e) { return e.name == doubtful; });
   auto other = searched(d, std::move(all), most_effects, false);
-  return excess(other) < excess(out) / 9 ? other : out;
+  return leaves_a_ninth(other) ? other : out;
 }
 
 }  // namespace detail

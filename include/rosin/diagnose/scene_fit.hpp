@@ -45,6 +45,13 @@ struct scene_data {
   band_kernels kernels{};
   double most_periods = 1e9;  ///< of each recording that any fit looks at
 
+  /// The same of a fit with these effects, whose own models may hold for less.
+  [[nodiscard]] double most_periods_with(const std::vector<pluck_effect>& effects) const {
+    double most = most_periods;
+    for (const pluck_effect& e : effects) most = std::min(most, e.horizon_periods);
+    return most;
+  }
+
   /// What is free in a fit that a fit with everything free is compared with: ends were moved along with an effect that is then
   /// taken out.
   [[nodiscard]] freedom compared() const { return layout.has_ends() ? freedom::all : freedom::no_corrections; }
@@ -142,9 +149,8 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
                                          std::array<double, 2> noise) {
   scene_fit fit{effects, value, {}, {}, {}, {}, 0, 0, false};
   bool again = false;  // what is taken out of the recordings depends on the fit
-  double most_periods = data.most_periods;
-  for (const pluck_effect& e : effects) again = again || e.undo, most_periods = std::min(most_periods, e.horizon_periods);
-  for (fit_stage& s : stages) s.periods = std::min(s.periods, most_periods);
+  for (const pluck_effect& e : effects) again = again || e.undo;
+  for (fit_stage& s : stages) s.periods = std::min(s.periods, data.most_periods_with(effects));
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const bool last = i + 1 == stages.size();
     for (int round = 0; round < (again ? (last ? 8 : 2) : 1); ++round) {

@@ -100,7 +100,8 @@ private:
 
 }  // namespace detail
 
-/// Nothing where the terminations' forces or the rod's speed are not given, or the bow is too near an end. Torsion: as declared, at the plucks' tension.
+/// Nothing where the terminations' forces or the rod's speed are not given, or the bow is too near an end. Torsion: as declared, at
+/// the plucks' tension.
 [[nodiscard]] inline std::optional<width_and_drift> find_width_and_drift(const std::vector<contact_take>& takes,
                                                                          const torsion_values& torsion) {
   for (const auto& t : takes)
