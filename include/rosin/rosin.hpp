@@ -25,6 +25,8 @@
 #include <rosin/math/fft_policy.hpp>
 #include <rosin/math/lane_fft.hpp>
 #include <rosin/math/lanes.hpp>
+#include <rosin/math/plain_complex.hpp>
+#include <rosin/math/spectrum_line.hpp>
 
 #include <rosin/acquire/checks.hpp>
 #include <rosin/acquire/effect_names.hpp>
@@ -38,8 +40,6 @@
 #include <rosin/acquire/ringing.hpp>
 #include <rosin/acquire/sample_runs.hpp>
 #include <rosin/acquire/signal_checks.hpp>
-#include <rosin/acquire/spectrum_line.hpp>
-#include <rosin/calibrate/band_kernels.hpp>
 
 #include <rosin/condition/ac_coupling.hpp>
 #include <rosin/condition/fourier_resampler.hpp>
@@ -52,6 +52,7 @@
 #include <rosin/condition/overlap_save_design.hpp>
 #include <rosin/condition/record_delay.hpp>
 
+#include <rosin/calibrate/band_kernels.hpp>
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/calibrate/damped_lines.hpp>
 #include <rosin/calibrate/damped_spectrum.hpp>
@@ -81,6 +82,7 @@
 #include <rosin/propagate/airy_kernel.hpp>
 #include <rosin/propagate/band.hpp>
 #include <rosin/propagate/bow_point.hpp>
+#include <rosin/propagate/complex_dispersion.hpp>
 #include <rosin/propagate/dispersion.hpp>
 #include <rosin/propagate/fir.hpp>
 #include <rosin/propagate/string_parameters.hpp>
@@ -251,8 +253,6 @@
 #include <rosin/hardware/serial_source.hpp>
 #include <rosin/hardware/take_file.hpp>
 #include <rosin/hardware/wav_header.hpp>
-#include <rosin/math/plain_complex.hpp>
-#include <rosin/propagate/complex_dispersion.hpp>
 
 #include <rosin/report/csv.hpp>
 #include <rosin/report/npy.hpp>

@@ -7,7 +7,7 @@
 //
 #pragma once
 
-#include <rosin/acquire/spectrum_line.hpp>
+#include <rosin/math/spectrum_line.hpp>
 
 #include <array>
 #include <optional>

@@ -8,7 +8,7 @@
 //
 #pragma once
 
-#include <rosin/acquire/spectrum_line.hpp>
+#include <rosin/math/spectrum_line.hpp>
 
 #include <limits>
 #include <optional>

@@ -8,9 +8,9 @@
 //
 #pragma once
 
-#include <rosin/acquire/spectrum_line.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/diagnose/sensor_chain.hpp>
+#include <rosin/math/spectrum_line.hpp>
 
 namespace rosin {
 

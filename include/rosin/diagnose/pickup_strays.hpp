@@ -9,11 +9,9 @@
 #pragma once
 
 #include <rosin/diagnose/pickup_ringing.hpp>
+#include <rosin/math/spectrum_line.hpp>
 
-#include <array>
-#include <complex>
 #include <functional>
-#include <optional>
 
 namespace rosin {
 
@@ -31,24 +29,11 @@ struct stray_lines {
 
 namespace detail {
 
-/// Under a Hann window.
-inline double amplitude_of_line(std::span<const double> x, double f, double rate_Hz) {
-  std::complex<double> sum = 0, w = 1;
-  const auto turn = std::polar(1.0, -full_turn * f / rate_Hz);
-  double weight = 0;
-  for (std::size_t j = 0; j < x.size(); ++j, w *= turn) {
-    const double hann = 0.5 - 0.5 * std::cos(full_turn * (static_cast<double>(j) + 0.5) / static_cast<double>(x.size()));
-    sum += hann * x[j] * w, weight += hann;
-  }
-  return 2 * std::abs(sum) / weight;
-}
-
 inline stray_line seen_at(std::span<const double> x, double rate_Hz, const peak_finder& peaks, const peak_finder::peak& p) {
+  const auto amplitude = [&](std::span<const double> of) { return amplitude_at(hann_windowed(of), p.frequency_Hz, rate_Hz); };
   const std::size_t half = x.size() / 2;
-  const double first = amplitude_of_line(x.first(half), p.frequency_Hz, rate_Hz),
-               second = amplitude_of_line(x.subspan(half), p.frequency_Hz, rate_Hz);
-  return {p.frequency_Hz, amplitude_of_line(x, p.frequency_Hz, rate_Hz), p.power / peaks.floor_at(p.frequency_Hz),
-          second / std::max(first, 1e-300)};
+  const double first = amplitude(x.first(half)), second = amplitude(x.subspan(half));
+  return {p.frequency_Hz, amplitude(x), p.power / peaks.floor_at(p.frequency_Hz), second / std::max(first, 1e-300)};
 }
 
 /// The mains' harmonics that stand out and are steady.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <rosin/acquire/spectrum_line.hpp>
+#include <rosin/math/spectrum_line.hpp>
 
 #include <doctest/doctest.h>
 
