@@ -96,7 +96,8 @@ void write_panel(std::ostream& out, const panel& p, const std::string& name, dou
         << colour::slip << "'\n";
   out << "set label 1 " << quoted(p.title) << " at screen " << 82.0 / width << ", screen " << top + 14 / height
       << " left noenhanced\nset key at screen " << 1 - 18.0 / width << ", screen " << top + 22 / height << "\nset xlabel "
-      << quoted(p.x_label) << " noenhanced\nset ylabel " << quoted(p.y_label) << " noenhanced\n"
+      << quoted(p.x_label) << " noenhanced\nset label 2 " << quoted(p.y_label) << " at screen " << 14.0 / width << ", screen "
+      << (bottom + top) / 2 << " center rotate noenhanced\n"
       << "set lmargin at screen " << 82.0 / width << "\nset rmargin at screen " << 1 - (p.cells.empty() ? 18.0 : 70.0) / width
       << "\nset bmargin at screen " << bottom << "\nset tmargin at screen " << top << "\nset ytics autofreq\n";
   for (std::size_t i = 0; i < p.y_marks.size(); ++i)

@@ -48,7 +48,7 @@ TEST_CASE("contact bristles: their stiffness, and that they let go bit by bit" *
   }
 }
 
-TEST_CASE("contact bristles: sensors ten times as noisy do not make them stiffer") {
+TEST_CASE("contact bristles: sensors ten times as noisy do not make them stiffer" * doctest::test_suite("long")) {
   const bristly strokes(1.5e4, 3e-3);
   rosin::stick_bench bench(strokes.takes(), contact_rigs::declared());
   REQUIRE(bench.usable());

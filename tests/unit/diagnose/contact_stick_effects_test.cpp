@@ -54,7 +54,7 @@ TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q an
     CHECK(other.density < 0.3 * rod.density);
 }
 
-TEST_CASE("contact stick effects: rods that ring for longer than a window of the transform") {
+TEST_CASE("contact stick effects: rods that ring for longer than a window of the transform" * doctest::test_suite("long")) {
   const struct { double frequency_Hz, q; } rods[] = {{1340, 280}, {700, 170}, {150, 60}};
   for (const auto& r : rods) {
     const contact_rigs::springy_rod<decltype(contact_rigs::curve())> law{contact_rigs::curve(), r.frequency_Hz, r.q, 0.004};

@@ -44,7 +44,7 @@ TEST_CASE("mismatch class: of a string as declared both versions are a step, to 
   CHECK(ideal.shape_N == doctest::Approx(ideal.shape_noise_N).epsilon(0.2));
 }
 
-TEST_CASE("mismatch class: what the wire does both versions agree on") {
+TEST_CASE("mismatch class: what the wire does both versions agree on" * doctest::test_suite("long")) {
   rosin::rig_burden wide;
   wide.pluck_width_m = 3e-3;
   for (const auto& wire : {seen({}, 60e-6), seen(wide)}) {

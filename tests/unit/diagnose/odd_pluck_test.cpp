@@ -33,7 +33,8 @@ TEST_CASE("odd pluck: three plucks of one string contradict nothing, and of two 
   CHECK_FALSE(odd_of(sound.takes, {}));
 }
 
-TEST_CASE("odd pluck: samples that a recorder lost are found, with their number and where, in a take that was held out as well") {
+TEST_CASE("odd pluck: samples that a recorder lost are found, with their number and where, in a take that was held out as well" *
+          doctest::test_suite("long")) {
   three p = sound_plucks();
   constexpr std::size_t at = 3600, count = 7;
   for (auto& channel : p.held[0].force_N) channel.erase(channel.begin() + at, channel.begin() + at + count);
@@ -94,7 +95,7 @@ TEST_CASE("odd pluck: of three at places of their own the one that was made else
   CHECK_FALSE(odd_of(p.takes, p.held));
 }
 
-TEST_CASE("odd pluck: the strongest rings a thousandth higher") {
+TEST_CASE("odd pluck: the strongest rings a thousandth higher" * doctest::test_suite("long")) {
   three p = sound_plucks();
   for (auto& channel : p.takes[0].force_N) channel = rosin::resampled(channel, 1e-3);
   const auto odd = odd_of(p.takes, p.held);

@@ -205,7 +205,8 @@ TEST_CASE("ends that are known to move are part of the declared model: nothing i
 }
 
 TEST_CASE(
-    "ends that hold the string against turning are told from a shorter or stiffer string: one of them, both, and how firmly") {
+    "ends that hold the string against turning are told from a shorter or stiffer string: one of them, both, and how firmly" *
+    doctest::test_suite("long")) {
   struct clamped {
     std::array<double, 2> clamping;
     std::string id;

@@ -49,7 +49,8 @@ TEST_CASE("rattle: an obstacle that only the strongest pluck meets is found, wit
   }
 }
 
-TEST_CASE("rattle: one that two of three plucks meet is told by both, against the softest by itself") {
+TEST_CASE("rattle: one that two of three plucks meet is told by both, against the softest by itself" *
+          doctest::test_suite("long")) {
   const rosin::obstacle stop{0.62, -1.0e-3, 3e5};
   const auto none = [](const rosin::pluck_fit_result&) { return std::vector<rosin::pluck_effect>{}; };
   const std::vector<rosin::pluck_take> takes{pluck(0.5, 1, stop), pluck(2, 2, stop)}, held{pluck(1.6, 3, stop)};
