@@ -22,6 +22,7 @@ struct rig_burden {
   sensor_faults sensors{};
   yielding_rod rod{};
   double pluck_width_m = 0, contact_width_m = 0;
+  int contact_places = 2;             ///< over which that is spread, the outer ones at its edges
   double detuning = 0, coupling = 0;  ///< of the second plane; plucks only
 
   /// An ideal rig: nothing of all this.
@@ -55,6 +56,7 @@ namespace detail {
   for (const auto& [width_m, what] : {std::pair{b.contact_width_m, "contact"}, {b.pluck_width_m, "wire"}})
     if (const double half = width_m / rig.string.length_m / 2; !(width_m >= 0 && half < position && half < 1 - position))
       return std::string{what} + ": wider than the string has room for";
+  if (b.contact_places < 2) return "contact: a width needs two places";
   for (const double clamping : b.string.clamping) {
     if (!(clamping >= 0 && clamping <= 1)) return "clamped end: the clamping must lie between 0 and 1";
     if (clamping > 0 &&
@@ -162,7 +164,7 @@ template <FrictionLaw Law, RodMotion Motion>
     if (!problem.empty()) return failure{problem};
   const detail::burdened_steps_of_take how{settings, stroke.duration_s};
   auto steps = step_stroke(rig, burden.string, law, motion, burden.rod, stroke.position, burden.contact_width_m, how.duration_s(),
-                           how.limit_Hz, how.step_s, how.decimate.reach());
+                           how.limit_Hz, how.step_s, how.decimate.reach(), burden.contact_places);
   disturb(steps.end_N, burden.sensors, how.step_s, how.lead_s);
   return how.sampled(steps, settings.sample_rate_Hz);
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Takes of a burdened string: a pluck by a wire that lets go at once or gradually, and a stroke of a rod that may itself
-// yield, touch the string over a width (two contacts with half the force each), and press or move unsteadily. Everything is
+// yield, touch the string over a width (contacts that share the force), and press or move unsteadily. Everything is
 // stepped; what the sensors and the converter do to it is in burdened_sensors.hpp.
 //
 #pragma once
@@ -132,15 +132,16 @@ private:
 /// The rod's or bow's own give: a mass on a spring along its motion. None where the mass is 0.
 using yielding_rod = yielding_support;
 
-/// A stroke: `width_m` 0 is one contact, otherwise two, width_m apart, that share the normal force. Nothing happens for `still`
-/// steps, from which on the motion's time counts.
+/// A stroke: `width_m` 0 is one contact, otherwise as many as `places` (two or more), evenly over width_m, that share the normal
+/// force. Nothing happens for `still` steps, from which on the motion's time counts.
 template <FrictionLaw Law, class Motion>
 [[nodiscard]] burdened_steps step_stroke(const modal_rig& rig, const string_burden& burden, Law law, const Motion& motion,
                                          const yielding_rod& rod, double position, double width_m, double duration_s,
-                                         double mode_limit_Hz, double step_s, std::size_t still = 0) {
-  const double half = width_m / rig.string.length_m / 2;
-  const std::vector<double> at =
-      width_m > 0 ? std::vector<double>{position - half, position + half} : std::vector<double>{position};
+                                         double mode_limit_Hz, double step_s, std::size_t still = 0, int places = 2) {
+  std::vector<double> at{position};
+  if (width_m > 0) at.resize(static_cast<std::size_t>(places));
+  for (std::size_t i = 0; i < at.size() && width_m > 0; ++i)
+    at[i] = position + (static_cast<double>(i) / (places - 1) - 0.5) * width_m / rig.string.length_m;
   const auto contacts = static_cast<Eigen::Index>(at.size());
   burdened_string string{rig, burden, at, mode_limit_Hz, step_s};
   driven_mode gives;
@@ -174,7 +175,7 @@ template <FrictionLaw Law, class Motion>
     bool slipping = false, solved = true;
     double warmest = 0;
     if (contacts > 1)
-      for (int round = 0; round < 40; ++round) {
+      for (int round = 0; round < 20 * contacts; ++round) {
         const Eigen::VectorXd old = force;
         for (Eigen::Index i = 0; i < contacts; ++i) {
           Law trial = laws[static_cast<std::size_t>(i)];

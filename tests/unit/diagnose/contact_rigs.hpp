@@ -79,13 +79,15 @@ struct springy_rod {
 
 template <class Law>
 [[nodiscard]] stroke play(const Law& law, const rippled_rod& rod, const rosin::modal_torsion& torsion, std::uint64_t seed,
-                          double position = 0.27, double duration_s = 0.1, double noise_N = 0.3e-3, double width_m = 0) {
+                          double position = 0.27, double duration_s = 0.1, double noise_N = 0.3e-3, double width_m = 0,
+                          int places = 2) {
   stroke r;
   const rosin::modal_rig rig{.string = e_string, .torsion = torsion};
   const rosin::modal_stroke how{.position = position, .duration_s = duration_s};
-  const auto take =
-      width_m > 0 ? rosin::simulate_stroke(rig, rosin::rig_burden{.contact_width_m = width_m}, law, rod, how, {.oversampling = 4})
-                  : rosin::simulate_stroke(rig, law, rod, how, {.oversampling = 4});
+  const auto take = width_m > 0
+                        ? rosin::simulate_stroke(rig, rosin::rig_burden{.contact_width_m = width_m, .contact_places = places},
+                                                 law, rod, how, {.oversampling = 4})
+                        : rosin::simulate_stroke(rig, law, rod, how, {.oversampling = 4});
   if (!take) return r;
   const rosin::converter sensor{.gain = 1, .newtons_per_full_scale = 2, .noise_N = noise_N, .bits = 16};
   r.near = rosin::convert(take->force_near_N, rate, sensor, seed).newtons();

@@ -71,8 +71,8 @@ TEST_CASE("a transducer that feels the tension reads the string's strain besides
 TEST_CASE("a stroke is that of modal_stroke; a contact of no width is one of very little; a heavy rod does not yield") {
   const rosin::velocity_curve<rosin::two_exponential_curve<double>> law{{0.38, 0.02, 0.42, 0.14, 0.35}};
   const rosin::steady_rod motion{.speed_m_s = 0.2, .normal_force_N = 0.3};
-  const auto play = [&](const rosin::yielding_rod& rod, double width) {
-    return rosin::step_stroke(rig, {}, law, motion, rod, 0.3, width, 0.02, 250e3, step_s);
+  const auto play = [&](const rosin::yielding_rod& rod, double width, int places = 2) {
+    return rosin::step_stroke(rig, {}, law, motion, rod, 0.3, width, 0.02, 250e3, step_s, 0, places);
   };
   const auto plain = play({}, 0);
   const rosin::modal_contact peer{rig, 0.3, 250e3, step_s};
@@ -81,6 +81,8 @@ TEST_CASE("a stroke is that of modal_stroke; a contact of no width is one of ver
   CHECK(test::apart(play({0.003, 900, 10}, 0).force_N, plain.force_N) > 0.02);
   const auto early = static_cast<std::size_t>(0.0075 / step_s);  // until the first slips: then the smallest difference grows
   CHECK(test::apart(play({}, 1e-5).force_N, std::span(plain.force_N).first(early)) < 0.02);
+  CHECK(test::apart(play({}, 1e-5, 5).force_N, std::span(plain.force_N).first(early)) < 0.02);
+  CHECK(test::apart(play({}, 3e-3, 5).force_N, play({}, 3e-3).force_N) > 0.1);
 
   rosin::modal_settings settings{.oversampling = oversampling};
   const auto other = rosin::simulate_stroke(rig, law, motion, {.position = 0.3, .duration_s = 0.02}, settings);
