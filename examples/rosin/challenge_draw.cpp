@@ -113,6 +113,7 @@ hidden_effect under_the_bow(const std::string& name, challenge_rig& r, source& s
   }
   if (name == "finite-contact-width") {
     r.contact_width_m = std::sqrt(k) * s.uniform(3e-3, 8e-3);
+    r.contact_places = 2 + static_cast<int>(s.uniform(0, 5));
     return {name, "", "", {{"width_m", r.contact_width_m}}};
   }
   if (name == "speed-ripple" || name == "normal-force-ripple") {
@@ -234,6 +235,7 @@ json truth_of(const challenge_rig& r) {
           {"position", r.base.position},
           {"gain", r.base.gain},
           {"noise_N", r.base.noise_N},
+          {"contact_places", r.contact_width_m > 0 ? r.contact_places : 1},
           {"damping", r.base.rig.damping == rosin::damping_convention::viscous ? "viscous" : "kelvin-voigt"}};
 }
 

@@ -62,7 +62,7 @@ public:
     const unsteady_rod motion{rig_.base.strokes[i], rig_.ripple_Hz, rig_.speed_ripple, rig_.force_ripple, lead_s_};
     const auto run = [&](const auto& law) {
       return rosin::step_stroke(rig_.bowed, rig_.burden, law, motion, rig_.rod, rig_.base.position, rig_.contact_width_m,
-                                rig_.base.stroke_s + 2 * lead_s_, limit_Hz, step_);
+                                rig_.base.stroke_s + 2 * lead_s_, limit_Hz, step_, 0, rig_.contact_places);
     };
     auto steps = rig_.bristles_N_m > 0 ? run(bristles(i))
                  : rig_.creeps         ? run(rosin::creep{rig_.base.steady_friction, *rig_.creeps})

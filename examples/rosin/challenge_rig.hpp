@@ -42,6 +42,7 @@ struct challenge_rig {
   rosin::yielding_rod rod;
   std::array<rosin::converter, 2> converters;
   double release_duration_s = 0, pluck_width_m = 0, contact_width_m = 0;
+  int contact_places = 2;
   double detuning = 0, pluck_angle_rad = 0, sensor_angle_rad = 0;
   double ripple_Hz = 0, speed_ripple = 0, force_ripple = 0;
   double bristles_N_m = 0;  ///< elasto-plastic friction

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // 200 noisy plucks from the modal simulator: are the stated standard deviations true, and could anybody do better?
 #include "pluck_statistics.hpp"
+#include "support/approx.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,7 +11,7 @@ TEST_CASE("200 plucks: errors as large as stated, within 20 %, and at most 1.3 t
   REQUIRE(e.error.size() == 200);
   for (std::size_t i = 0; i < proof::judged_names.size(); ++i) {
     CAPTURE(proof::judged_names[i]);
-    CHECK(proof::rms_ratio(e.error, e.sd, i) == doctest::Approx(1).epsilon(0.2));
+    CHECK(proof::rms_ratio(e.error, e.sd, i) == test::approx(1).epsilon(0.2));
     CHECK(proof::rms_ratio(e.error, e.bound, i) < 1.3);
   }
 }

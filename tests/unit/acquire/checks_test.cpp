@@ -5,6 +5,8 @@
 
 #include <support/synthetic_take.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 rosin::take_check check(const test::pluck& p) {
@@ -37,12 +39,12 @@ TEST_CASE("release, pitch and noise are measured on the way") {
   test::pluck p;
   const auto c = check(p);
   REQUIRE(c.release_s);
-  CHECK(*c.release_s == doctest::Approx(p.release_s).epsilon(2e-3));
+  CHECK(*c.release_s == test::approx(p.release_s).epsilon(2e-3));
   REQUIRE(c.pitch_Hz);
-  CHECK(*c.pitch_Hz == doctest::Approx(330).epsilon(1e-3));
+  CHECK(*c.pitch_Hz == test::approx(330).epsilon(1e-3));
   REQUIRE(c.channels.size() == 2);
   REQUIRE(c.channels[0].noise_rms);
-  CHECK(*c.channels[0].noise_rms == doctest::Approx(4e-4).epsilon(0.08));
+  CHECK(*c.channels[0].noise_rms == test::approx(4e-4).epsilon(0.08));
 }
 
 TEST_CASE("swapped channels, DC and AC coupled") {
@@ -143,7 +145,7 @@ TEST_CASE("hum and an offset under a pluck") {
     x[0][i] += 0.02 * std::sin(6.283185307179586 * 50 * static_cast<double>(i) / p.rate_Hz);
   const auto hum = rosin::check_take(r, r.takes[0], test::signals(r, p, x));
   CHECK(kinds(hum) == "hum(near:warning) ");
-  CHECK(hum.channels[0].hum->amplitude == doctest::Approx(0.02).epsilon(0.03));
+  CHECK(hum.channels[0].hum->amplitude == test::approx(0.02).epsilon(0.03));
   auto y = test::pluck_forces(p);
   for (double& v : y[1]) v += 0.1;
   CHECK(rosin::check_take(r, r.takes[0], test::signals(r, p, y)).found("offset"));
@@ -197,5 +199,5 @@ TEST_CASE("a quiet take gives the noise") {
   r.takes[0].kind = rosin::take_kind::quiet;
   const auto c = rosin::check_take(r, r.takes[0], test::pluck_signals(r, p));
   CHECK(kinds(c) == "");
-  CHECK(*c.channels[1].noise_rms == doctest::Approx(4e-4).epsilon(0.03));
+  CHECK(*c.channels[1].noise_rms == test::approx(4e-4).epsilon(0.03));
 }

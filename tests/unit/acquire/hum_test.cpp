@@ -5,6 +5,8 @@
 
 #include <support/synthetic_take.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 /// A ringing string with hum on it; the stretch begins a period after the release.
@@ -29,10 +31,10 @@ TEST_CASE("hum of 50 and 60 Hz is told apart and measured, in 0.14 s of a ringin
     const auto found = rosin::find_hum(ringing_with_hum(mains, 0.01, 0.3), 48000, 597.4);
     REQUIRE(found);
     CHECK(found->frequency_Hz == mains);
-    CHECK(found->amplitude == doctest::Approx(0.01).epsilon(0.05));
+    CHECK(found->amplitude == test::approx(0.01).epsilon(0.05));
     REQUIRE(found->lines.size() >= 2);
-    CHECK(found->lines[1].frequency_Hz == doctest::Approx(3 * mains).epsilon(0.02));
-    CHECK(found->lines[1].amplitude == doctest::Approx(0.003).epsilon(0.1));
+    CHECK(found->lines[1].frequency_Hz == test::approx(3 * mains).epsilon(0.02));
+    CHECK(found->lines[1].amplitude == test::approx(0.003).epsilon(0.1));
   }
 }
 

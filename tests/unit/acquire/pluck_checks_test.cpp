@@ -5,6 +5,8 @@
 
 #include <support/synthetic_take.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 struct result {
@@ -29,10 +31,10 @@ TEST_CASE("levels before the release and its time at the string") {
   const auto s = test::pluck_signals(r, p);
   const auto found = steps_of(r, s);
   REQUIRE(found.released);
-  CHECK(found.steps.near_level == doctest::Approx(0.7).epsilon(1e-3));
-  CHECK(found.steps.far_level == doctest::Approx(0.3).epsilon(1e-3));
+  CHECK(found.steps.near_level == test::approx(0.7).epsilon(1e-3));
+  CHECK(found.steps.far_level == test::approx(0.3).epsilon(1e-3));
   const rosin::detail::pluck_view view{&r, &r.takes[0], &s, p.fundamental_Hz, 0};
-  CHECK(rosin::detail::release_time(view, found.steps) == doctest::Approx(p.release_s).epsilon(2e-3));
+  CHECK(rosin::detail::release_time(view, found.steps) == test::approx(p.release_s).epsilon(2e-3));
 }
 
 TEST_CASE("a channel that does not step by a fifth of the force holds no release") {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "support/approx.hpp"
+
 namespace {
 
 rosin::rig paper_rig() {
@@ -24,9 +26,9 @@ bool says(const rosin::rig_values& values, const std::string& sentence) {
 
 TEST_CASE("impedance follows from tension and fundamental, and says so") {
   const auto v = rosin::values_of(paper_rig());
-  CHECK(v.wave_speed_m_s.value() == doctest::Approx(414.48));
-  CHECK(v.impedance_Ns_m->value == doctest::Approx(0.174918).epsilon(1e-5));
-  CHECK(v.linear_density_kg_m.value() == doctest::Approx(72.5 / (414.48 * 414.48)));
+  CHECK(v.wave_speed_m_s.value() == test::approx(414.48));
+  CHECK(v.impedance_Ns_m->value == test::approx(0.174918).epsilon(1e-5));
+  CHECK(v.linear_density_kg_m.value() == test::approx(72.5 / (414.48 * 414.48)));
   CHECK(says(v, "impedance_Ns_m = 0.1749, from tension and fundamental"));
   CHECK(says(v, "tension_tolerance = 0.02, none given"));
 }
@@ -36,10 +38,10 @@ TEST_CASE("a tolerance is two standard deviations, and one that was given needs 
   r.string.tension_tolerance = 0.04;
   r.position_tolerance = 0.01;
   const auto v = rosin::values_of(r);
-  CHECK(v.tension_N->sd == doctest::Approx(72.5 * 0.02));
-  CHECK(v.position->sd == doctest::Approx(0.005));
-  CHECK(v.fundamental_Hz.sd == doctest::Approx(660 * 0.0015));
-  CHECK(v.impedance_Ns_m->sd == doctest::Approx(v.impedance_Ns_m->value * std::hypot(0.02, 0.0015)));
+  CHECK(v.tension_N->sd == test::approx(72.5 * 0.02));
+  CHECK(v.position->sd == test::approx(0.005));
+  CHECK(v.fundamental_Hz.sd == test::approx(660 * 0.0015));
+  CHECK(v.impedance_Ns_m->sd == test::approx(v.impedance_Ns_m->value * std::hypot(0.02, 0.0015)));
   CHECK_FALSE(says(v, "tension_tolerance = 0.02, none given"));
 }
 
@@ -60,9 +62,9 @@ TEST_CASE("the wire's material stands in for what was not measured") {
   r.string.youngs_modulus_Pa = 2.0e11;
   const auto v = rosin::values_of(r);
   // 4.168e-4 kg/m for steel of this radius
-  CHECK(v.linear_density_kg_m.value() == doctest::Approx(4.168e-4).epsilon(1e-3));
-  CHECK(v.tension_N->value == doctest::Approx(4.168e-4 * 414.48 * 414.48).epsilon(1e-3));
-  CHECK(v.bending_stiffness_Nm2->value == doctest::Approx(4.486e-5).epsilon(1e-3));
+  CHECK(v.linear_density_kg_m.value() == test::approx(4.168e-4).epsilon(1e-3));
+  CHECK(v.tension_N->value == test::approx(4.168e-4 * 414.48 * 414.48).epsilon(1e-3));
+  CHECK(v.bending_stiffness_Nm2->value == test::approx(4.486e-5).epsilon(1e-3));
 }
 
 TEST_CASE("without length there is nothing in SI units, and nothing is made up") {

@@ -5,6 +5,8 @@
 
 #include <support/synthetic_take.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 std::vector<double> ringing(const test::pluck& p) {
@@ -20,7 +22,7 @@ TEST_CASE("the pitch is found to a thousandth where it is the declared one, or n
   for (const double declared : {330.0, 333.0, 326.0}) {
     const auto found = rosin::find_ringing(ringing(p), p.rate_Hz, declared, p.inharmonicity);
     REQUIRE(found);
-    CHECK(found->pitch_Hz == doctest::Approx(330).epsilon(1e-3));
+    CHECK(found->pitch_Hz == test::approx(330).epsilon(1e-3));
     CHECK(found->score > 0.9);
   }
 }
@@ -33,7 +35,7 @@ TEST_CASE("another pitch is found for what it is: wrong sample rates, octaves") 
     CAPTURE(wrong);
     const auto found = rosin::find_ringing(x, p.rate_Hz * wrong, p.fundamental_Hz, p.inharmonicity);
     REQUIRE(found);
-    CHECK(found->pitch_Hz == doctest::Approx(330 * wrong).epsilon(3e-3));
+    CHECK(found->pitch_Hz == test::approx(330 * wrong).epsilon(3e-3));
   }
 }
 
@@ -44,7 +46,7 @@ TEST_CASE("missing partials do not mislead: plucked at a node") {
     p.position = position;
     const auto found = rosin::find_ringing(ringing(p), p.rate_Hz, p.fundamental_Hz, p.inharmonicity);
     REQUIRE(found);
-    CHECK(found->pitch_Hz == doctest::Approx(330).epsilon(1e-3));
+    CHECK(found->pitch_Hz == test::approx(330).epsilon(1e-3));
   }
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double step = 1.0 / 32768;
@@ -108,7 +110,7 @@ TEST_CASE("what repeats by nature is no dropout") {
 TEST_CASE("noise under a level and under hum") {
   auto x = sine(0.02, 960, 1e-3, 20000);
   for (double& v : x) v += 0.7;
-  CHECK(rosin::noise_in(x, 20000) == doctest::Approx(1e-3).epsilon(0.03));
+  CHECK(rosin::noise_in(x, 20000) == test::approx(1e-3).epsilon(0.03));
   CHECK(rosin::noise_in(x, 1) == 0);
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 /// One second of a channel of 2 N full scale, 16 bit: a sine and noise.
@@ -39,8 +41,8 @@ TEST_CASE("an ordinary channel gives figures and no findings") {
   const auto c = check(sine(0.8, 1e-3));
   CHECK(c.findings.empty());
   REQUIRE(c.channels.size() == 1);
-  CHECK(c.channels[0].rms == doctest::Approx(0.8 / std::sqrt(2)).epsilon(1e-2));
-  CHECK(c.channels[0].of_full_scale == doctest::Approx(0.4).epsilon(1e-2));
+  CHECK(c.channels[0].rms == test::approx(0.8 / std::sqrt(2)).epsilon(1e-2));
+  CHECK(c.channels[0].of_full_scale == test::approx(0.4).epsilon(1e-2));
   CHECK(c.channels[0].unit == "N");
 }
 
@@ -72,7 +74,7 @@ TEST_CASE("clipping and dropouts are errors with their time and place") {
   for (std::size_t i = 4000; i < 4040; ++i) lost.signals[0].values[i] = lost.signals[0].values[3999];
   const auto dropped = check(lost);
   REQUIRE(dropped.found("dropouts"));
-  CHECK(dropped.findings[0].start_s == doctest::Approx(0.5).epsilon(1e-3));
+  CHECK(dropped.findings[0].start_s == test::approx(0.5).epsilon(1e-3));
 }
 
 TEST_CASE("silence is an error in a take that should sound, a warning in a quiet one") {

@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/approx.hpp"
+
 TEST_CASE_TEMPLATE("FFTW's transform is the definition at any length, as Eigen's is", T, float, double) {
   static_assert(rosin::RealFft<rosin::fftw_fft<T>, T> && rosin::ComplexFft<rosin::fftw_fft<std::complex<T>>, T>);
   for (const std::size_t n : laws::fft_lengths) {
@@ -48,5 +50,5 @@ TEST_CASE("plans are made from several threads at once") {
       }
     });
   for (std::thread& thread : threads) thread.join();
-  for (const double sum : sums) CHECK(sum == doctest::Approx(60 * 229.5));
+  for (const double sum : sums) CHECK(sum == test::approx(60 * 229.5));
 }

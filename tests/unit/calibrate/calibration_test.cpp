@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/approx.hpp"
+
 TEST_CASE("a calibration carries values and covariance over from the fit") {
   using layout = rosin::pluck_layout;
   std::vector<rosin::pluck_take> takes(2);
@@ -31,17 +33,17 @@ TEST_CASE("a calibration carries values and covariance over from the fit") {
 
   const rosin::calibration c = rosin::calibration_from(fit, 0.2, 0.17, 0.015);
   CHECK(c.position == 0.199);  // of the take that was declared nearest, though the other one turned out nearer
-  CHECK(c.at.delay_s[0] == doctest::Approx(0.199 / 1300));
-  CHECK(c.at.delay_s[1] == doctest::Approx(0.801 / 1300));
-  CHECK(c.at.stiffness_s2 == doctest::Approx(6e-5 / std::pow(2 * std::numbers::pi * 650, 2)));
-  CHECK(c.at.loss.quality == doctest::Approx(1000));
-  CHECK(c.gain[0] == doctest::Approx(1.1));
+  CHECK(c.at.delay_s[0] == test::approx(0.199 / 1300));
+  CHECK(c.at.delay_s[1] == test::approx(0.801 / 1300));
+  CHECK(c.at.stiffness_s2 == test::approx(6e-5 / std::pow(2 * std::numbers::pi * 650, 2)));
+  CHECK(c.at.loss.quality == test::approx(1000));
+  CHECK(c.gain[0] == test::approx(1.1));
   const double from_pitch = c.at.delay_s[0] * 0.01 / 650, from_position = 1e-4 / 1300;
-  CHECK(std::sqrt(c.covariance(0, 0)) == doctest::Approx(std::hypot(from_pitch, from_position)));
+  CHECK(std::sqrt(c.covariance(0, 0)) == test::approx(std::hypot(from_pitch, from_position)));
   CHECK(c.covariance(0, 1) ==
-        doctest::Approx(c.at.delay_s[0] * c.at.delay_s[1] * std::pow(0.01 / 650, 2) - from_position * from_position));
-  CHECK(c.scale_relative_sd == doctest::Approx(0.02).epsilon(1e-3));
-  CHECK(std::sqrt(c.covariance(5, 5)) == doctest::Approx(0.02 * std::sqrt(2 * 0.001)));
+        test::approx(c.at.delay_s[0] * c.at.delay_s[1] * std::pow(0.01 / 650, 2) - from_position * from_position));
+  CHECK(c.scale_relative_sd == test::approx(0.02).epsilon(1e-3));
+  CHECK(std::sqrt(c.covariance(5, 5)) == test::approx(0.02 * std::sqrt(2 * 0.001)));
   CHECK(c.impedance_relative_sd == 0.015);
 }
 
@@ -51,9 +53,9 @@ TEST_CASE("moving a calibration moves what it says, and moving it back brings it
   rosin::waveform_vector by;
   by << 1e-7, -2e-7, 1e-14, 1e-5, 1e-9, 0.01;
   const rosin::calibration moved = c.moved(by);
-  CHECK(moved.at.delay_s[1] == doctest::Approx(2.998e-4));
-  CHECK(1 / moved.at.loss.quality == doctest::Approx(1 / 900.0 + 1e-5));
-  CHECK(moved.gain[0] / moved.gain[1] == doctest::Approx(std::exp(0.01)));
-  CHECK(moved.gain[0] * moved.gain[1] == doctest::Approx(1));
-  CHECK(moved.moved(-by).at.loss.quality == doctest::Approx(900));
+  CHECK(moved.at.delay_s[1] == test::approx(2.998e-4));
+  CHECK(1 / moved.at.loss.quality == test::approx(1 / 900.0 + 1e-5));
+  CHECK(moved.gain[0] / moved.gain[1] == test::approx(std::exp(0.01)));
+  CHECK(moved.gain[0] * moved.gain[1] == test::approx(1));
+  CHECK(moved.moved(-by).at.loss.quality == test::approx(900));
 }

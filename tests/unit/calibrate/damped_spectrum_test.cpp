@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 TEST_CASE("the spectrum of a decaying tone is 1 / (s - p), off the axis, however sharp the tone") {
   const double rate_Hz = 48e3;
   const std::complex<double> p(-3, 2 * std::numbers::pi * 777);
@@ -25,5 +27,5 @@ TEST_CASE("the weights' squares, summed") {
   const rosin::damped_line_of_frequencies line(48e3, 150, 20000, 4e3);
   double sum = 0;
   for (std::size_t n = 0; n < line.samples; ++n) sum += std::exp(-2 * 150 * static_cast<double>(n) / 48e3);
-  CHECK(line.weighted_samples() == doctest::Approx(sum));
+  CHECK(line.weighted_samples() == test::approx(sum));
 }

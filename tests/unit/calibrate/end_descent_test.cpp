@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
 #include "support/plucked_ends.hpp"
 
 TEST_CASE("from a mode that is somewhat off to the one that is there; the noise is found between the partials") {
@@ -19,9 +20,9 @@ TEST_CASE("from a mode that is somewhat off to the one that is there; the noise 
   CHECK(d.misfit() < 1.5);
   CHECK(before > d.misfit());
   const rosin::admittance_mode m = d.model().mode(d.value(), 0);
-  CHECK(m.frequency_Hz == doctest::Approx(1200).epsilon(0.003));
-  CHECK(test::steel_e.impedance_Ns_m() / m.per_mass_per_s == doctest::Approx(0.01).epsilon(0.03));
-  CHECK(d.noise()[0] == doctest::Approx(3e-4).epsilon(0.15));
+  CHECK(m.frequency_Hz == test::approx(1200).epsilon(0.003));
+  CHECK(test::steel_e.impedance_Ns_m() / m.per_mass_per_s == test::approx(0.01).epsilon(0.03));
+  CHECK(d.noise()[0] == test::approx(3e-4).epsilon(0.15));
   const auto kept = d.keep();
   d.erase(0);
   CHECK(d.model().size() == d.model().layout.size());

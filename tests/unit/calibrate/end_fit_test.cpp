@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
 #include "support/plucked_ends.hpp"
 
 namespace {
@@ -16,7 +17,7 @@ TEST_CASE("a mode at either end, found from two plucks with its mass, and the st
                                  {std::vector<test::end_mode>{{900, 30, 0.004}}, std::vector<test::end_mode>{{2700, 15, 0.012}}}};
   const auto found = rosin::fit_ends(test::pluck_at(rig, {0.3, 0.2}, 0.12), test::about_steel_e);
   REQUIRE(found);
-  CHECK(found->plucks.value[0] == doctest::Approx(659.69).epsilon(1e-5));
+  CHECK(found->plucks.value[0] == test::approx(659.69).epsilon(1e-5));
   CHECK(found->plucks.misfit < 2);
   int heavy = 0;
   for (const auto& m : found->modes)
@@ -49,7 +50,7 @@ TEST_CASE("what is declared of an end is taken as it stands") {
   REQUIRE(found);
   CHECK(found->modes.empty());
   CHECK(found->plucks.misfit < 2);
-  CHECK(found->plucks.value[0] == doctest::Approx(659.69).epsilon(1e-5));
+  CHECK(found->plucks.value[0] == test::approx(659.69).epsilon(1e-5));
   how.known[0] = {};
   const auto rigid = rosin::fit_ends(takes, test::about_steel_e, {}, how);
   CHECK((!rigid || rigid->plucks.misfit > 20));

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
 #include "support/plucked_ends.hpp"
 
 namespace {
@@ -60,8 +61,8 @@ TEST_CASE("under a force that stays, an end that gives way is so much more strin
   const rosin::admittance_mode spring{500, 10, 3};
   const rosin::detail::held_string held(m, {spring}, 0.25, 1e-3);
   const double more = 3 / std::pow(2 * std::numbers::pi * 500, 2);
-  CHECK(held.force[0] == doctest::Approx(0.75e-3 / (1e-3 + more)));
-  CHECK(held.force[1] == doctest::Approx((0.25e-3 + more) / (1e-3 + more)));
+  CHECK(held.force[0] == test::approx(0.75e-3 / (1e-3 + more)));
+  CHECK(held.force[1] == test::approx((0.25e-3 + more) / (1e-3 + more)));
 }
 
 TEST_CASE("end_problem: an end that is remembered is asked once at each s, by copies too") {

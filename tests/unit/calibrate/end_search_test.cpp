@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
 #include "support/plucked_ends.hpp"
 
 TEST_CASE("the first guess is the mode that is there, at its end and about as heavy") {
@@ -17,9 +18,9 @@ TEST_CASE("the first guess is the mode that is there, at its end and about as he
   const Eigen::MatrixXd hessian = eq.hessian + 1e-3 * Eigen::MatrixXd::Identity(m.size(), m.size());
   const auto found = rosin::search_modes(problem, m, v, hessian, eq.gradient, {true, true}, 150, 11e3);
   const auto at = std::find_if(found.begin(), found.end(), [](const auto& c) { return c.end == 1; });
-  CHECK(at->mode.frequency_Hz == doctest::Approx(3100).epsilon(0.04));
+  CHECK(at->mode.frequency_Hz == test::approx(3100).epsilon(0.04));
   CHECK(at->mode.q > 5);
-  CHECK(test::steel_e.impedance_Ns_m() / at->mode.per_mass_per_s == doctest::Approx(0.05).epsilon(0.5));
+  CHECK(test::steel_e.impedance_Ns_m() / at->mode.per_mass_per_s == test::approx(0.05).epsilon(0.5));
   CHECK(at->gain > 1000);
   CHECK(std::is_sorted(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; }));
   const auto near_only = rosin::search_modes(problem, m, v, hessian, eq.gradient, {true, false}, 150, 11e3);

@@ -9,6 +9,8 @@
 
 #include <cmath>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846, rate_Hz = 128e3;
@@ -64,9 +66,9 @@ TEST_CASE("after a bow that was lifted: pitch within 0.1 cent and Q within one p
   REQUIRE(decay);
   CHECK(std::abs(1200 * std::log2(decay->fundamental_Hz / 660)) < 0.02);
   CHECK(std::abs(decay->fundamental_Hz - 660) < 5 * decay->fundamental_sd + 1e-3);
-  CHECK(decay->inharmonicity == doctest::Approx(stiffness_of(string)).epsilon(0.002));
+  CHECK(decay->inharmonicity == test::approx(stiffness_of(string)).epsilon(0.002));
   for (const int n : {1, 2, 5, 10, 20, 27}) {
-    CHECK(decay->quality(n) == doctest::Approx(1000).epsilon(0.01));
+    CHECK(decay->quality(n) == test::approx(1000).epsilon(0.01));
     CHECK(std::abs(1200 * std::log2(decay->frequency_Hz(n) / rosin::partial_frequency(660, stiffness_of(string), n))) < 0.1);
   }
   CHECK(std::abs(decay->loss.value[0] - 1e-3) < 6 * decay->loss.inverse_q_sd(3000) + 1e-5);
@@ -83,7 +85,7 @@ TEST_CASE("loss that grows with frequency is told from loss that does not") {
                                            expecting(rig.string));
   REQUIRE(decay);
   for (const int n : {1, 5, 15, 25})
-    CHECK(decay->quality(n) == doctest::Approx(1 / rig.string.loss.inverse_q(decay->frequency_Hz(n))).epsilon(0.01));
+    CHECK(decay->quality(n) == test::approx(1 / rig.string.loss.inverse_q(decay->frequency_Hz(n))).epsilon(0.01));
 }
 
 TEST_CASE("a bow that stays on ends nowhere, and no bow at all neither") {

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using complex = std::complex<double>;
@@ -32,12 +34,12 @@ TEST_CASE("one line stays one, two are told apart") {
     const rosin::line_fit one = rosin::fit_one_line(z, baseband_rate_Hz, 220, 4);
     const rosin::line_fit best = rosin::one_or_two_lines(z, baseband_rate_Hz, one, 4, 1);
     REQUIRE(best.model.parts.size() == (two ? 2U : 1U));
-    if (!two) CHECK(best.model.parts[0].detuning_rad_s == doctest::Approx(9).epsilon(1e-3));
+    if (!two) CHECK(best.model.parts[0].detuning_rad_s == test::approx(9).epsilon(1e-3));
     else {
       const double low = std::min(best.model.parts[0].detuning_rad_s, best.model.parts[1].detuning_rad_s);
       const double high = std::max(best.model.parts[0].detuning_rad_s, best.model.parts[1].detuning_rad_s);
-      CHECK(low == doctest::Approx(9).epsilon(1e-3));
-      CHECK(high == doctest::Approx(15).epsilon(1e-3));
+      CHECK(low == test::approx(9).epsilon(1e-3));
+      CHECK(high == test::approx(15).epsilon(1e-3));
     }
   }
 }

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using complex = std::complex<double>;
@@ -24,8 +26,8 @@ std::vector<complex> line(double decay, double detuning, complex amplitude, std:
 TEST_CASE("a damped line is found from near it, amplitude and all") {
   const auto z = line(1.7, 12, {0.3, -0.4});
   const rosin::line_fit fit = rosin::fit_line(z, line_rate_Hz, {{{1.0, 1.0, 11.0}}, 440});
-  CHECK(fit.model.parts[0].decay_per_s == doctest::Approx(1.7).epsilon(1e-6));
-  CHECK(fit.model.parts[0].detuning_rad_s == doctest::Approx(12).epsilon(1e-6));
+  CHECK(fit.model.parts[0].decay_per_s == test::approx(1.7).epsilon(1e-6));
+  CHECK(fit.model.parts[0].detuning_rad_s == test::approx(12).epsilon(1e-6));
   CHECK(std::abs(fit.model.parts[0].amplitude - complex(0.3, -0.4)) < 1e-6);
   CHECK(fit.residual < 1e-9);
 }
@@ -39,7 +41,7 @@ TEST_CASE("least-squares amplitudes leave what is orthogonal") {
 
 TEST_CASE("energy of a part, and the path of a glide, are their integrals") {
   const rosin::damped_part p{{3, 4}, 0.7, 0};
-  CHECK(p.energy(2) == doctest::Approx(25 * (1 - std::exp(-2.8)) / 1.4));
-  CHECK(rosin::damped_part{{3, 4}, 0, 0}.energy(2) == doctest::Approx(50));
-  CHECK(rosin::pitch_glide{1e-3, 4}.path_s(0.5) == doctest::Approx((1 - std::exp(-2.0)) / 4));
+  CHECK(p.energy(2) == test::approx(25 * (1 - std::exp(-2.8)) / 1.4));
+  CHECK(rosin::damped_part{{3, 4}, 0, 0}.energy(2) == test::approx(50));
+  CHECK(rosin::pitch_glide{1e-3, 4}.path_s(0.5) == test::approx((1 - std::exp(-2.0)) / 4));
 }

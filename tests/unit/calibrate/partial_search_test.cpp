@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 std::vector<double> stiff_tone(double f0, double b, double noise) {
@@ -28,10 +30,10 @@ TEST_CASE("partials are found and numbered, from 2 % beside the pitch") {
   const auto x = stiff_tone(196.3, 1.2e-4, 1e-3);
   for (const double nominal : {192.5, 196.0, 200.0}) {
     const rosin::found_partials found = rosin::find_partials(x, 44100, nominal, 0.06, 64);
-    CHECK(found.fundamental_Hz == doctest::Approx(196.3).epsilon(2e-3));
+    CHECK(found.fundamental_Hz == test::approx(196.3).epsilon(2e-3));
     REQUIRE(found.partials.size() >= 15);
     for (const auto& p : found.partials)
-      CHECK(p.frequency_Hz == doctest::Approx(p.number * 196.3 * std::sqrt(1 + 1.2e-4 * p.number * p.number)).epsilon(5e-3));
+      CHECK(p.frequency_Hz == test::approx(p.number * 196.3 * std::sqrt(1 + 1.2e-4 * p.number * p.number)).epsilon(5e-3));
   }
 }
 

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/approx.hpp"
+
 TEST_CASE("one partial: frequency, decay and amplitude within their error bars") {
   constexpr double rate_Hz = 8000, f = 523.7, decay = 2.5, noise = 0.01;
   int inside = 0;
@@ -22,9 +24,9 @@ TEST_CASE("one partial: frequency, decay and amplitude within their error bars")
     REQUIRE(track);
     const rosin::partial p = rosin::summary_of(*track);
     CHECK(p.number == 2);
-    CHECK(p.frequency_Hz == doctest::Approx(f).epsilon(1e-4));
-    CHECK(p.decay_per_s == doctest::Approx(decay).epsilon(0.05));
-    CHECK(p.inverse_q() == doctest::Approx(decay / (std::numbers::pi * f)).epsilon(0.05));
+    CHECK(p.frequency_Hz == test::approx(f).epsilon(1e-4));
+    CHECK(p.decay_per_s == test::approx(decay).epsilon(0.05));
+    CHECK(p.inverse_q() == test::approx(decay / (std::numbers::pi * f)).epsilon(0.05));
     inside += std::abs(p.frequency_Hz - f) < 2 * p.frequency_sd ? 1 : 0;
     inside += std::abs(p.decay_per_s - decay) < 2 * p.decay_sd ? 1 : 0;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/calibrate/pickup_fit.hpp>
 
+#include "support/approx.hpp"
 #include "support/single_pickup.hpp"
 
 #include <doctest/doctest.h>
@@ -23,9 +24,9 @@ TEST_CASE("pitch, inharmonicity and loss from one channel, from 2 % beside the p
     const double f0 = 180 + 17.3 * seed, b = 3e-5 * seed;
     const auto fit = rosin::fit_pickup(plucked(f0, b, 1e-3, seed), pickup_rate_Hz, f0 * (seed % 2 ? 0.98 : 1.02));
     REQUIRE_MESSAGE(fit, fit.error());
-    CHECK(fit->fundamental_Hz == doctest::Approx(f0).epsilon(1e-4));
-    CHECK(fit->inharmonicity == doctest::Approx(b).epsilon(0.05));
-    CHECK(fit->loss.law.inverse_q(1000) == doctest::Approx(1 / 1200.0 + 2e-4).epsilon(0.1));
+    CHECK(fit->fundamental_Hz == test::approx(f0).epsilon(1e-4));
+    CHECK(fit->inharmonicity == test::approx(b).epsilon(0.05));
+    CHECK(fit->loss.law.inverse_q(1000) == test::approx(1 / 1200.0 + 2e-4).epsilon(0.1));
     CHECK(fit->partials.size() >= 8);
     inside += std::abs(fit->fundamental_Hz - f0) < 2 * fit->fundamental_sd ? 1 : 0;
     inside += std::abs(fit->inharmonicity - b) < 2 * fit->inharmonicity_sd ? 1 : 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/calibrate/pickup_glide.hpp>
 
+#include "support/approx.hpp"
 #include "support/single_pickup.hpp"
 
 #include <doctest/doctest.h>
@@ -28,6 +29,6 @@ TEST_CASE("a glide of pitch is found, and none is found where there is none") {
     REQUIRE(tracks.size() >= 5);
     const rosin::glide_estimate found = rosin::estimate_glide(tracks);
     if (glide == 0) CHECK(std::abs(found.glide.relative) < 2e-4);
-    else CHECK(found.glide.relative == doctest::Approx(glide * std::exp(-5 * 0.1)).epsilon(0.25));
+    else CHECK(found.glide.relative == test::approx(glide * std::exp(-5 * 0.1)).epsilon(0.25));
   }
 }

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/approx.hpp"
+
 TEST_CASE("pitch and inharmonicity from numbered partials, an outlier among them") {
   std::mt19937_64 random{2};
   std::normal_distribution<double> gauss;
@@ -16,6 +18,6 @@ TEST_CASE("pitch and inharmonicity from numbered partials, an outlier among them
   const rosin::robust_fit fit = rosin::fit_pitch(partials, 220, 0);
   CHECK(std::abs(fit.value[0] - 220.5) < 4 * std::sqrt(fit.covariance(0, 0)));
   CHECK(std::abs(fit.value[1] - 8e-5) < 4 * std::sqrt(fit.covariance(1, 1)));
-  CHECK(fit.value[1] == doctest::Approx(8e-5).epsilon(0.02));
+  CHECK(fit.value[1] == test::approx(8e-5).epsilon(0.02));
   CHECK(fit.weight[6] < 0.2);
 }

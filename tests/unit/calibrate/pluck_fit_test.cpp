@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using layout = rosin::pluck_layout;
@@ -55,16 +57,15 @@ TEST_CASE("one pluck gives string, position, release, ratio of gains and noise, 
   CHECK(sigmas(*fit, layout::convention, -1) < 4);
   CHECK(sigmas(*fit, layout::first_position, 0.3) < 4);
   CHECK(sigmas(*fit, fit->layout.at(0, layout::release), 0.004) < 4);
-  CHECK(fit->value[layout::gain_near] - fit->value[layout::gain_far] == doctest::Approx(std::log(1.02 / 0.97)).epsilon(1e-3));
+  CHECK(fit->value[layout::gain_near] - fit->value[layout::gain_far] == test::approx(std::log(1.02 / 0.97)).epsilon(1e-3));
   CHECK(fit->sd[layout::fundamental] / 659.69 < 1e-7);
-  CHECK(fit->noise_N[0] == doctest::Approx(0.3e-3).epsilon(0.05));
-  CHECK(fit->noise_N[1] == doctest::Approx(0.4e-3).epsilon(0.05));
+  CHECK(fit->noise_N[0] == test::approx(0.3e-3).epsilon(0.05));
+  CHECK(fit->noise_N[1] == test::approx(0.4e-3).epsilon(0.05));
   CHECK(fit->misfit < 1.4);
   CHECK(fit->residual_ratio[0] < 2e-3);
   CHECK(fit->unidentified.empty());
   // The common scale is the wires' and the converters' tolerance: 3 % and 5 % as limits, on two gains.
-  CHECK(fit->sd[layout::gain_near] ==
-        doctest::Approx(1 / std::sqrt(std::pow(0.015, -2) + 2 * std::pow(0.025, -2))).epsilon(0.02));
+  CHECK(fit->sd[layout::gain_near] == test::approx(1 / std::sqrt(std::pow(0.015, -2) + 2 * std::pow(0.025, -2))).epsilon(0.02));
 }
 
 TEST_CASE("it starts from 2 % off in pitch and 0.02 in position") {
@@ -74,8 +75,8 @@ TEST_CASE("it starts from 2 % off in pitch and 0.02 in position") {
       take.position = 0.3 + place;
       const auto fit = rosin::fit_plucks({take}, {.fundamental_Hz = pitch * 659.69});
       REQUIRE_MESSAGE(fit, fit.error());
-      CHECK(fit->value[layout::fundamental] == doctest::Approx(659.69).epsilon(1e-6));
-      CHECK(fit->value[layout::first_position] == doctest::Approx(0.3).epsilon(1e-4));
+      CHECK(fit->value[layout::fundamental] == test::approx(659.69).epsilon(1e-6));
+      CHECK(fit->value[layout::first_position] == test::approx(0.3).epsilon(1e-4));
     }
 }
 
@@ -85,7 +86,7 @@ TEST_CASE("plucks at two positions share the string and keep their places apart"
   CHECK(sigmas(*fit, fit->layout.position(0), 0.3) < 4);
   CHECK(sigmas(*fit, fit->layout.position(1), 0.21) < 4);
   CHECK(std::exp(fit->value[fit->layout.at(1, layout::strength)] - fit->value[fit->layout.at(0, layout::strength)]) ==
-        doctest::Approx(0.5).epsilon(1e-3));
+        test::approx(0.5).epsilon(1e-3));
 }
 
 TEST_CASE("AC-coupled sensors are part of the model") {
@@ -117,7 +118,7 @@ TEST_CASE("another convention of damping is taken up by psi") {
   const auto fit =
       rosin::fit_plucks({pluck(0.3, 1, 6, 0.07, 0, rosin::damping_convention::kelvin_voigt)}, {.fundamental_Hz = 660});
   REQUIRE_MESSAGE(fit, fit.error());
-  CHECK(fit->value[layout::convention] == doctest::Approx(1).epsilon(0.3));
+  CHECK(fit->value[layout::convention] == test::approx(1).epsilon(0.3));
   CHECK(fit->misfit < 2);
   CHECK(sigmas(*fit, layout::fundamental, 659.69) < 5);
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using layout = rosin::pluck_layout;
@@ -39,16 +41,16 @@ TEST_CASE("every parameter has a place and a name of its own; equal positions sh
 TEST_CASE("tolerances are limits: two standard deviations") {
   const layout l(three_takes(), {});
   const rosin::pluck_guess guess{.fundamental_Hz = 600, .gain_tolerance = {0.05, 0.02}};
-  CHECK(l.prior(layout::gain_far, three_takes(), guess).sd == doctest::Approx(0.01));
-  CHECK(l.prior(l.at(2, layout::strength), three_takes(), guess).sd == doctest::Approx(0.02));
-  CHECK(l.prior(l.at(2, layout::strength), three_takes(), guess).value == doctest::Approx(std::log(0.5)));
+  CHECK(l.prior(layout::gain_far, three_takes(), guess).sd == test::approx(0.01));
+  CHECK(l.prior(l.at(2, layout::strength), three_takes(), guess).sd == test::approx(0.02));
+  CHECK(l.prior(l.at(2, layout::strength), three_takes(), guess).value == test::approx(std::log(0.5)));
   CHECK(l.prior(layout::fundamental, three_takes(), guess).sd == 0);
 }
 
 TEST_CASE("a declared stiffness holds the inharmonicity loosely, as long as that is free") {
   const rosin::pluck_guess guess{.fundamental_Hz = 600, .inharmonicity = 6e-5};
   CHECK(layout(three_takes(), {}).prior(layout::inharmonicity, three_takes(), guess).value == 6e-5);
-  CHECK(layout(three_takes(), {}).prior(layout::inharmonicity, three_takes(), guess).sd == doctest::Approx(1.8e-5));
+  CHECK(layout(three_takes(), {}).prior(layout::inharmonicity, three_takes(), guess).sd == test::approx(1.8e-5));
   CHECK(layout(three_takes(), {}).prior(layout::inharmonicity, three_takes(), {.fundamental_Hz = 600}).sd == 0);
   CHECK(layout(three_takes(), {.stiffness = false}).prior(layout::inharmonicity, three_takes(), guess).sd == 0);
 }
@@ -62,7 +64,7 @@ TEST_CASE("options fix parameters; the inverse leaves them out") {
   Eigen::MatrixXd h = Eigen::MatrixXd::Identity(l.size(), l.size()) * 4;
   h(0, 2) = h(2, 0) = 1;
   const Eigen::MatrixXd inverse = rosin::invert_free(l, h);
-  CHECK(inverse(0, 0) == doctest::Approx(4.0 / 15));
+  CHECK(inverse(0, 0) == test::approx(4.0 / 15));
   CHECK(inverse(layout::inharmonicity, layout::inharmonicity) == 0);
 }
 
@@ -97,10 +99,10 @@ TEST_CASE("terminations that are known to move stand at the end: how far each mo
   CHECK(l.is_free(q));
   CHECK_FALSE(l.is_scale(l.first_of_ends() + 1));
   CHECK(l.concerns(q, 2));
-  CHECK(l.prior(q, three_takes(), {}).sd == doctest::Approx(0.1));
+  CHECK(l.prior(q, three_takes(), {}).sd == test::approx(0.1));
   Eigen::VectorXd v = Eigen::VectorXd::Zero(l.size());
   v[q] = std::log(1.1);
-  CHECK(l.ends(v)[1].modes[0].q == doctest::Approx(13.2));
+  CHECK(l.ends(v)[1].modes[0].q == test::approx(13.2));
   CHECK(l.ends(v)[1].modes[1].frequency_Hz == 470);
   CHECK(l.ends_within_doubt(v));
   v[q] = 0.3;

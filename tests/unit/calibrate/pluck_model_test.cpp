@@ -8,6 +8,8 @@
 #include <complex>
 #include <numbers>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using complex = std::complex<double>;
@@ -54,8 +56,8 @@ TEST_CASE("the sum over partials is the inverse transform of the closed form, at
 
 TEST_CASE("at the release the ends still feel the wire") {
   CHECK(rosin::static_forces(position)[0] == 0.7);
-  CHECK(by_lines(0, 0) == doctest::Approx(0.7).epsilon(5e-3));
-  CHECK(by_lines(0, 1) == doctest::Approx(0.3).epsilon(5e-3));
+  CHECK(by_lines(0, 0) == test::approx(0.7).epsilon(5e-3));
+  CHECK(by_lines(0, 1) == test::approx(0.3).epsilon(5e-3));
 }
 
 TEST_CASE("partials, their decay and their phase") {
@@ -65,10 +67,10 @@ TEST_CASE("partials, their decay and their phase") {
   for (int n = 1; n <= 7; ++n) {
     const double f = n * 600 * std::sqrt(1 + 1e-4 * n * n), half = (1 / 500.0 + 1e-7 * f) / 2;
     const rosin::damped_line& l = lines[static_cast<std::size_t>(n - 1)];
-    CHECK(std::abs(l.pole) == doctest::Approx(2 * std::numbers::pi * f));
-    CHECK(-l.pole.real() / std::abs(l.pole) == doctest::Approx(half));
-    CHECK(l.residue[0].imag() / l.residue[0].real() == doctest::Approx(-half).epsilon(1e-3));
-    CHECK(l.residue[1].real() == doctest::Approx((n % 2 ? 1 : -1) * l.residue[0].real()));
+    CHECK(std::abs(l.pole) == test::approx(2 * std::numbers::pi * f));
+    CHECK(-l.pole.real() / std::abs(l.pole) == test::approx(half));
+    CHECK(l.residue[0].imag() / l.residue[0].real() == test::approx(-half).epsilon(1e-3));
+    CHECK(l.residue[1].real() == test::approx((n % 2 ? 1 : -1) * l.residue[0].real()));
   }
-  CHECK(lossy.stiffness_s2() == doctest::Approx(1e-4 / std::pow(2 * std::numbers::pi * 600, 2)));
+  CHECK(lossy.stiffness_s2() == test::approx(1e-4 / std::pow(2 * std::numbers::pi * 600, 2)));
 }

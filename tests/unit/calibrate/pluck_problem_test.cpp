@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double problem_rate_Hz = 96e3;
@@ -64,8 +66,8 @@ TEST_CASE("the assessment knows noise from misfit") {
   for (std::size_t t = 0; t < 2; ++t) v[layout.at(t, rosin::pluck_layout::strength)] = std::log(1e-9);  // pure noise was recorded
   const rosin::pluck_problem problem(data, {layout, guess.ac_coupled_Hz}, {}, guess, v, 160, 1e9, true, {0.1, 0.1});
   const rosin::assessment found = problem.assess(v);
-  CHECK(found.noise[0] == doctest::Approx(0.2).epsilon(0.06));
-  CHECK(found.misfit == doctest::Approx(1).epsilon(0.15));
+  CHECK(found.noise[0] == test::approx(0.2).epsilon(0.06));
+  CHECK(found.misfit == test::approx(1).epsilon(0.15));
   CHECK(found.inflation() == 1);
   rosin::assessment bad = found;
   bad.misfit = 3;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double start_rate_Hz = 128e3;
@@ -35,20 +37,20 @@ TEST_CASE("pitch, release and position are found to a fraction of a sample") {
   for (const double off : {0.98, 1.0, 1.02}) {
     const auto start = rosin::find_start({ideal(640, 0.27, 0.00371)}, {.fundamental_Hz = 640 * off});
     REQUIRE_MESSAGE(start, start.error());
-    CHECK(start->fundamental_Hz == doctest::Approx(640).epsilon(2e-4));
-    CHECK(start->release_s[0] == doctest::Approx(0.00371).epsilon(2e-3));
-    CHECK(start->position[0] == doctest::Approx(0.27).epsilon(0.01));
+    CHECK(start->fundamental_Hz == test::approx(640).epsilon(2e-4));
+    CHECK(start->release_s[0] == test::approx(0.00371).epsilon(2e-3));
+    CHECK(start->position[0] == test::approx(0.27).epsilon(0.01));
   }
 }
 
 TEST_CASE("lags between samples") {
   CHECK(rosin::detail::vertex(1, 2, 1) == 0);
-  CHECK(rosin::detail::vertex(1, 2, 2) == doctest::Approx(0.5));
+  CHECK(rosin::detail::vertex(1, 2, 2) == test::approx(0.5));
   CHECK(rosin::detail::vertex(0, 1, 5) == 0);          // no maximum
   CHECK(rosin::detail::vertex(0, 1, 1.9999999) == 1);  // never further than a sample
   std::vector<double> x(4000);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::cos(2 * std::numbers::pi * static_cast<double>(i) / 97.31);
-  CHECK(rosin::detail::likest_lag(x, 0, 90, 105) == doctest::Approx(97.31).epsilon(1e-4));
+  CHECK(rosin::detail::likest_lag(x, 0, 90, 105) == test::approx(97.31).epsilon(1e-4));
 }
 
 TEST_CASE("a position far from the declared one is held near it, for the fit to refuse") {
@@ -59,5 +61,5 @@ TEST_CASE("a position far from the declared one is held near it, for the fit to 
                                        }()},
                                        {.fundamental_Hz = 640});
   REQUIRE(start);
-  CHECK(start->position[0] == doctest::Approx(0.41));
+  CHECK(start->position[0] == test::approx(0.41));
 }

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "support/approx.hpp"
+
 TEST_CASE_TEMPLATE("a step that drooped away comes back, but for its mean", T, float, double) {
   constexpr double rate_Hz = 128e3, corner_Hz = 3, step_at = 0.05;
   std::vector<T> seen, was;
@@ -20,7 +22,7 @@ TEST_CASE_TEMPLATE("a step that drooped away comes back, but for its mean", T, f
   for (const T x : was) mean += static_cast<double>(x) / static_cast<double>(was.size());
   rosin::restore_ac_coupled<T>(seen, corner_Hz, rate_Hz);
   for (std::size_t n = 0; n < seen.size(); n += 37)
-    CHECK(static_cast<double>(seen[n]) == doctest::Approx(static_cast<double>(was[n]) - mean).epsilon(2e-4));
+    CHECK(static_cast<double>(seen[n]) == test::approx(static_cast<double>(was[n]) - mean).epsilon(2e-4));
 }
 
 TEST_CASE("what passes a high-pass comes back, but for its mean") {
@@ -33,7 +35,7 @@ TEST_CASE("what passes a high-pass comes back, but for its mean") {
   rosin::restore_ac_coupled<double>(x, 40, 48e3);
   double mean = 0;
   for (const double w : was) mean += w / 5000;
-  for (std::size_t n = 0; n < x.size(); n += 61) CHECK(x[n] == doctest::Approx(was[n] - mean).epsilon(1e-9));
+  for (std::size_t n = 0; n < x.size(); n += 61) CHECK(x[n] == test::approx(was[n] - mean).epsilon(1e-9));
 }
 
 TEST_CASE("a DC-coupled signal is left alone") {

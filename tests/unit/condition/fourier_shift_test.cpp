@@ -9,6 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "support/approx.hpp"
+
 namespace {
 
 /// Three partials, the highest one at or just below half the sampling rate, later by `delay`.
@@ -63,5 +65,5 @@ TEST_CASE("the error does not grow with the delay") {
 TEST_CASE("in and out may be the same record") {
   std::vector<double> x = tones<double>(99, 0), expected = tones<double>(99, 1.5);
   rosin::fourier_shift<double>(99).process(x, x, 1.5);
-  for (std::size_t j = 0; j < x.size(); ++j) CHECK(x[j] == doctest::Approx(expected[j]).epsilon(1e-13));
+  for (std::size_t j = 0; j < x.size(); ++j) CHECK(x[j] == test::approx(expected[j]).epsilon(1e-13));
 }

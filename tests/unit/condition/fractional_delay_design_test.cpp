@@ -14,17 +14,18 @@
 #include <string>
 #include <vector>
 
+#include "support/approx.hpp"
+
 TEST_CASE("I0 is that of Boost") {
-  for (double x = 0; x < 40; x += 0.7)
-    CHECK(rosin::bessel_i0(x) == doctest::Approx(boost::math::cyl_bessel_i(0, x)).epsilon(1e-14));
+  for (double x = 0; x < 40; x += 0.7) CHECK(rosin::bessel_i0(x) == test::approx(boost::math::cyl_bessel_i(0, x)).epsilon(1e-14));
 }
 
 TEST_CASE("weights are symmetric about the middle, sum to one and pass through the samples") {
   std::array<double, 12> w{}, mirrored{};
   rosin::kaiser_weights(0.3, 6, w);
   rosin::kaiser_weights(0.7, 6, mirrored);
-  for (std::size_t j = 0; j < w.size(); ++j) CHECK(w[j] == doctest::Approx(mirrored[w.size() - 1 - j]).epsilon(1e-13));
-  CHECK(std::accumulate(w.begin(), w.end(), 0.0) == doctest::Approx(1).epsilon(1e-15));
+  for (std::size_t j = 0; j < w.size(); ++j) CHECK(w[j] == test::approx(mirrored[w.size() - 1 - j]).epsilon(1e-13));
+  CHECK(std::accumulate(w.begin(), w.end(), 0.0) == test::approx(1).epsilon(1e-15));
   rosin::kaiser_weights(0, 6, w);
   for (std::size_t j = 0; j < w.size(); ++j) CHECK(std::abs(w[j] - (j == 5 ? 1 : 0)) < 1e-15);
 }

@@ -14,6 +14,8 @@
 #include <numbers>
 #include <vector>
 
+#include "support/approx.hpp"
+
 using rosin::fractional_delay, rosin::lagrange, rosin::kaiser;
 
 static_assert(rosin::Stage<fractional_delay<float, lagrange<4>, 64>> && rosin::Stage<fractional_delay<double, kaiser<16>, 64>>);
@@ -78,7 +80,7 @@ TEST_CASE_TEMPLATE("a Lagrange delay of degree three is exact for cubics", T, fl
     const T y = line(static_cast<T>(cubic(0.1 * n)));
     if (n >= 7)
       CHECK(static_cast<double>(y) ==
-            doctest::Approx(cubic(0.1 * (n - 5.375))).epsilon(50 * static_cast<double>(std::numeric_limits<T>::epsilon())));
+            test::approx(cubic(0.1 * (n - 5.375))).epsilon(50 * static_cast<double>(std::numeric_limits<T>::epsilon())));
   }
 }
 
@@ -91,7 +93,7 @@ TEST_CASE("a delay out of range becomes the nearest one, and latency says so") {
   CHECK(longest.latency() == 13.25);
   double sum = 0;  // the centre of gravity of the response to a click is where it says
   for (int n = 0; n < 20; ++n) sum += n * longest(n == 0 ? 1.0 : 0.0);
-  CHECK(sum == doctest::Approx(13.25));
+  CHECK(sum == test::approx(13.25));
 }
 
 TEST_CASE("reset brings back the state after construction") {

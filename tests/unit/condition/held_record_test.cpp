@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 std::vector<double> step_and_ramp() {
@@ -20,7 +22,7 @@ TEST_CASE("to the spectrum and back a record is itself") {
   CHECK(spectrum.size() == held.bins());
   const auto back = held.record(spectrum);
   REQUIRE(back.size() == x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) CHECK(back[i] == doctest::Approx(x[i]).epsilon(1e-12));
+  for (std::size_t i = 0; i < x.size(); ++i) CHECK(back[i] == test::approx(x[i]).epsilon(1e-12));
 }
 
 TEST_CASE("a short filter sees what it would see if the record had been held before it for ever") {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "support/approx.hpp"
+
 namespace {
 
 struct kernel {
@@ -32,8 +34,8 @@ TEST_CASE("a and b carry two channels through four filters") {
     for (std::size_t input = 0; input < 2; ++input) pair.add(kernel{1, {h[output][input]}}, output, input);
   const double x[2] = {0.7, -1.3};
   const std::complex<double> z{x[0], x[1]}, y = pair.a[2] * z + pair.b[2] * std::conj(z);
-  CHECK(y.real() == doctest::Approx(h[0][0] * x[0] + h[0][1] * x[1]).epsilon(1e-15));
-  CHECK(y.imag() == doctest::Approx(h[1][0] * x[0] + h[1][1] * x[1]).epsilon(1e-15));
+  CHECK(y.real() == test::approx(h[0][0] * x[0] + h[0][1] * x[1]).epsilon(1e-15));
+  CHECK(y.imag() == test::approx(h[1][0] * x[0] + h[1][1] * x[1]).epsilon(1e-15));
   for (const std::size_t other : {0u, 1u, 3u}) CHECK(std::abs(pair.a[other]) + std::abs(pair.b[other]) == 0);
 }
 

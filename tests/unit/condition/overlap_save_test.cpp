@@ -15,6 +15,8 @@
 #include <span>
 #include <vector>
 
+#include "support/approx.hpp"
+
 namespace {
 
 struct kernel {
@@ -127,10 +129,10 @@ TEST_CASE("valid() counts out what reaches beyond the record") {
 
   const std::vector<std::vector<double>> ones{std::vector<double>(100, 1.0)};
   const auto out = run<double>(convolver, ones);
-  CHECK(out[0][96] == doctest::Approx(6));
-  CHECK(out[0][97] == doctest::Approx(5));
-  CHECK(out[1][3] == doctest::Approx(2));
-  CHECK(out[1][4] == doctest::Approx(3));
+  CHECK(out[0][96] == test::approx(6));
+  CHECK(out[0][97] == test::approx(5));
+  CHECK(out[1][3] == test::approx(2));
+  CHECK(out[1][4] == test::approx(3));
 }
 
 TEST_CASE("long kernels get long blocks") {
@@ -140,5 +142,5 @@ TEST_CASE("long kernels get long blocks") {
   std::vector<std::vector<double>> click{std::vector<double>(20000)};
   click[0][12345] = 1;
   const auto out = run<double>(convolver, click);
-  for (std::size_t j = 0; j < 5000; j += 7) CHECK(out[0][12345 + j] == doctest::Approx(kernels[0].taps[j]).epsilon(1e-13));
+  for (std::size_t j = 0; j < 5000; j += 7) CHECK(out[0][12345 + j] == test::approx(kernels[0].taps[j]).scale(1).epsilon(1e-13));
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/approx.hpp"
+
 namespace {
 
 double tone(double at, double share_of_rate) { return std::sin(2 * std::numbers::pi * share_of_rate * at + 0.3); }
@@ -40,12 +42,12 @@ TEST_CASE("clock drift: only the far channel is put right, take by take") {
   e.undo(takes, {}, {}, {}, drift);
   for (const auto& take : takes)
     for (std::size_t i = 50; i < 2950; ++i)
-      CHECK(take.force_N[1][i] == doctest::Approx(take.force_N[0][i]).epsilon(1e-4).scale(0.1));
+      CHECK(take.force_N[1][i] == test::approx(take.force_N[0][i]).epsilon(1e-4).scale(0.1));
 }
 
 TEST_CASE("clock drift: an empty record stays empty, a short one finite") {
   CHECK(rosin::resampled({}, 1e-4).empty());
   const auto y = rosin::resampled({1, 1, 1}, 1e-4);
   REQUIRE(y.size() == 3);
-  for (const double v : y) CHECK(v == doctest::Approx(1).epsilon(1e-3));
+  for (const double v : y) CHECK(v == test::approx(1).epsilon(1e-3));
 }

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
 #include "two_places.hpp"
 
 namespace {
@@ -59,14 +60,14 @@ TEST_CASE("contact as one: beside a width a ripple of the speed is found, and no
     REQUIRE_FALSE(found.as_declared);
     REQUIRE(found.hypotheses.front().effect == "finite-contact-width");
     const auto model = rosin::include(contact_rigs::declared(), found.hypotheses.front());
-    CHECK(model.width_s * contact_rigs::e_string.wave_speed_m_s() == doctest::Approx(0.005).epsilon(0.05));
+    CHECK(model.width_s * contact_rigs::e_string.wave_speed_m_s() == test::approx(0.005).epsilon(0.05));
     const auto then = rosin::contact_hypotheses(takes, model);
     CHECK(then.as_declared == (ripple == 0));
     if (ripple == 0) continue;
     const auto& second = then.hypotheses.front();
     CHECK(second.effect == "speed-ripple");
-    CHECK(second.parameters[0].value == doctest::Approx(140).epsilon(0.002));
-    CHECK(second.parameters[1].value == doctest::Approx(ripple).epsilon(0.05));
+    CHECK(second.parameters[0].value == test::approx(140).epsilon(0.002));
+    CHECK(second.parameters[1].value == test::approx(ripple).epsilon(0.05));
     CHECK(then.stick_fluctuation > 3 * rosin::contact_hypotheses(takes, rosin::include(model, second)).stick_fluctuation);
   }
 }

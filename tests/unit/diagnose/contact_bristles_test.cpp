@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "contact_rigs.hpp"
+#include "support/approx.hpp"
 
 namespace {
 
@@ -39,7 +40,7 @@ TEST_CASE("contact bristles: their stiffness, and that they let go bit by bit" *
     const auto h = rosin::bristle_hypothesis(bench, strokes.takes());
     CHECK(h.decided);
     CHECK(h.gain > 200);
-    CHECK(named_value(h, "bristle_stiffness_N_m") == doctest::Approx(stiffness).epsilon(0.03));
+    CHECK(named_value(h, "bristle_stiffness_N_m") == test::approx(stiffness).epsilon(0.03));
     CHECK(named_value(h, "friction_limit") > 0);
     CHECK(h.fluctuation < 1.1 * h.noise);  // nothing is left but noise
     CHECK(rosin::rod_hypothesis(bench).density < h.density);
@@ -56,7 +57,7 @@ TEST_CASE("contact bristles: sensors ten times as noisy do not make them stiffer
   CHECK(named_value(plain, "bristle_stiffness_N_m") > 1.2 * 1.5e4);  // in the whole band they would
   CHECK(h.decided);
   const auto& s0 = h.parameters.front();
-  CHECK(s0.value == doctest::Approx(1.5e4).epsilon(0.05));
+  CHECK(s0.value == test::approx(1.5e4).epsilon(0.05));
   CHECK(std::abs(s0.value - 1.5e4) < 1.96 * s0.sd);
   CHECK(h.fluctuation < 1.2 * h.noise);
 }

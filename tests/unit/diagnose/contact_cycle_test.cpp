@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 TEST_CASE("contact cycle: what grows towards the end of each stick, whatever their lengths") {
   rosin::contact_trace trace{"bow-1", {}, {}};
   double at = 0.1;
@@ -15,6 +17,6 @@ TEST_CASE("contact cycle: what grows towards the end of each stick, whatever the
   }
   const auto parts = rosin::left_by_part(trace);
   REQUIRE(parts.size() == 10);
-  for (std::size_t k = 0; k < 10; ++k) CHECK(parts[k] == doctest::Approx(static_cast<double>(k) + 0.5).epsilon(0.2));
+  for (std::size_t k = 0; k < 10; ++k) CHECK(parts[k] == test::approx(static_cast<double>(k) + 0.5).epsilon(0.2));
   CHECK(rosin::left_by_part({"none", {}, {}}) == std::vector<double>(10, 0.0));
 }

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "contact_rigs.hpp"
+#include "support/approx.hpp"
 
 TEST_CASE("contact effects: a contact as declared is called so") {
   const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 91),
@@ -24,7 +25,7 @@ TEST_CASE("contact effects: torsion that nobody declared comes first, and is all
   CHECK_FALSE(found.as_declared);
   CHECK(best.effect == "torsion");
   CHECK(best.gain > 10 * found.hypotheses[1].gain);
-  CHECK(best.parameters[0].value == doctest::Approx(7).epsilon(0.005));
+  CHECK(best.parameters[0].value == test::approx(7).epsilon(0.005));
   const auto then = rosin::contact_hypotheses({a.take()}, rosin::include({}, best));
   CHECK(then.as_declared);
   for (const auto& h : then.hypotheses) CHECK(h.effect != "torsion");
@@ -119,8 +120,8 @@ TEST_CASE("contact effects: friction that is gone where the law has none either 
   Eigen::VectorXd left = Eigen::VectorXd::Zero(103);
   CHECK(rosin::detail::loses_touch(rows, left).share == 0);
   left.segment(10, 10).setConstant(-0.3), left.tail(3).setConstant(-1);
-  CHECK(rosin::detail::loses_touch(rows, left).share == doctest::Approx(0.1));
-  CHECK(rosin::detail::loses_touch(rows, left).left == doctest::Approx(0.3 * std::sqrt(0.1)));
+  CHECK(rosin::detail::loses_touch(rows, left).share == test::approx(0.1));
+  CHECK(rosin::detail::loses_touch(rows, left).left == test::approx(0.3 * std::sqrt(0.1)));
 }
 
 TEST_CASE("contact effects: takes that tell nothing are left out, with a reason") {

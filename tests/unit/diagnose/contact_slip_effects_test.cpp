@@ -6,6 +6,7 @@
 
 #include "contact_rigs.hpp"
 #include "slips_by_hand.hpp"
+#include "support/approx.hpp"
 
 #include <random>
 
@@ -23,8 +24,8 @@ TEST_CASE("contact slip effects: a normal force that is not steady shows in slip
   CHECK(h.decided);
   CHECK(h.gain > 60);
   CHECK(h.held_out_gain > 30);
-  CHECK(h.parameters[0].value == doctest::Approx(118).epsilon(0.01));
-  CHECK(h.parameters[1].value == doctest::Approx(0.08).epsilon(0.1));
+  CHECK(h.parameters[0].value == test::approx(118).epsilon(0.01));
+  CHECK(h.parameters[1].value == test::approx(0.08).epsilon(0.1));
   CHECK(rosin::speed_ripple_hypothesis(sticks).gain < 20);
   // once it is part of the model, nothing of it is left
   auto model = rosin::include(contact_rigs::declared(), h);
@@ -44,8 +45,8 @@ TEST_CASE("contact slip effects: a normal force that ripples faster than the str
   const auto h = rosin::normal_ripple_hypothesis(rosin::slip_bench(sticks, takes));
   CHECK(h.decided);
   CHECK(h.gain > 60);
-  CHECK(h.parameters[0].value == doctest::Approx(790).epsilon(0.002));
-  CHECK(h.parameters[1].value == doctest::Approx(0.08).epsilon(0.1));
+  CHECK(h.parameters[0].value == test::approx(790).epsilon(0.002));
+  CHECK(h.parameters[1].value == test::approx(0.08).epsilon(0.1));
 }
 
 TEST_CASE(
@@ -111,7 +112,7 @@ TEST_CASE(
   for (const auto* heard : {&alone, &beside}) {
     rosin::stick_bench warm(takes, rosin::include(contact_rigs::declared(), *heard));
     const auto size = rosin::normal_ripple_hypothesis(rosin::slip_bench(warm, takes)).parameters[1].value;
-    CHECK(size == doctest::Approx(0.2).epsilon(0.08));
+    CHECK(size == test::approx(0.2).epsilon(0.08));
   }
   const auto known = rosin::include(contact_rigs::declared(), beside).heat;  // taken for granted once it is part of the model
   REQUIRE(known);

@@ -7,6 +7,7 @@
 #include <rosin/friction/creep.hpp>
 
 #include "contact_rigs.hpp"
+#include "support/approx.hpp"
 
 namespace {
 
@@ -45,9 +46,9 @@ TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q an
   CHECK(rod.decided);
   CHECK(rod.gain > 300);
   CHECK(rod.held_out_gain > 200);
-  CHECK(value(rod, "frequency_Hz") == doctest::Approx(1800).epsilon(0.01));
-  CHECK(value(rod, "q") == doctest::Approx(14).epsilon(0.12));
-  CHECK(value(rod, "mass_kg") == doctest::Approx(0.003).epsilon(0.06));
+  CHECK(value(rod, "frequency_Hz") == test::approx(1800).epsilon(0.01));
+  CHECK(value(rod, "q") == test::approx(14).epsilon(0.12));
+  CHECK(value(rod, "mass_kg") == test::approx(0.003).epsilon(0.06));
   CHECK(rod.peculiar);
   for (const auto& other :
        {rosin::torsion_hypothesis(bench), rosin::bristle_hypothesis(bench), rosin::creep_hypothesis(bench, takes)})
@@ -61,9 +62,9 @@ TEST_CASE("contact stick effects: rods that ring for longer than a window of the
     auto [slow, fast, takes, bench] = over(law, 17, 19);
     const auto rod = rod_of(bench);
     CHECK(rod.decided);
-    CHECK(value(rod, "frequency_Hz") == doctest::Approx(r.frequency_Hz).epsilon(0.003));
-    CHECK(value(rod, "q") == doctest::Approx(r.q).epsilon(0.08));
-    CHECK(value(rod, "mass_kg") == doctest::Approx(0.004).epsilon(0.05));
+    CHECK(value(rod, "frequency_Hz") == test::approx(r.frequency_Hz).epsilon(0.003));
+    CHECK(value(rod, "q") == test::approx(r.q).epsilon(0.08));
+    CHECK(value(rod, "mass_kg") == test::approx(0.004).epsilon(0.05));
   }
 }
 
@@ -75,7 +76,7 @@ TEST_CASE("contact stick effects: a light rod is peculiar, but not within the wi
     auto [slow, fast, takes, bench] = over(law, 11, 13);
     const auto rod = rod_of(bench);
     CHECK(rod.decided);
-    CHECK(value(rod, "frequency_Hz") == doctest::Approx(frequency_Hz).epsilon(0.02));
+    CHECK(value(rod, "frequency_Hz") == test::approx(frequency_Hz).epsilon(0.02));
     CHECK(rod.peculiar == (frequency_Hz < 0.9 * first_Hz));
   }
 }
@@ -90,9 +91,9 @@ TEST_CASE("contact stick effects: creep, with its speed and how sharply it grows
   const auto creep = rosin::creep_hypothesis(bench, takes);
   CHECK(creep.gain > 1000);
   CHECK(creep.held_out_gain > 1000);
-  CHECK(value(creep, "sharpness") == doctest::Approx(sharp).epsilon(0.1));
+  CHECK(value(creep, "sharpness") == test::approx(sharp).epsilon(0.1));
   CHECK(value(creep, "speed_at_normal_force_m_s") ==
-        doctest::Approx(limit_m_s * std::exp((1 - curve(0).value) / sharp)).epsilon(0.2));
+        test::approx(limit_m_s * std::exp((1 - curve(0).value) / sharp)).epsilon(0.2));
   for (const auto& other : {rosin::torsion_hypothesis(bench), rosin::rod_hypothesis(bench), rosin::bristle_hypothesis(bench)})
     CHECK(other.gain < 0.5 * creep.gain);
 }

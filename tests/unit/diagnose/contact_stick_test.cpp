@@ -6,6 +6,7 @@
 #include <random>
 
 #include "contact_rigs.hpp"
+#include "support/approx.hpp"
 
 namespace {
 
@@ -29,11 +30,11 @@ TEST_CASE("contact stick: coefficients are held at their bounds, and prediction 
   std::mt19937 source(1);
   rosin::stick_design same{{line(source, 2), line(source, 2)}, {{-9, 9}}}, other{{line(source, 2), line(source, 3)}, {{-9, 9}}};
   const auto good = rosin::fit_design(same, 0), bad = rosin::fit_design(other, 0);
-  CHECK(good.solution.shared[0] == doctest::Approx(2).epsilon(0.01));
+  CHECK(good.solution.shared[0] == test::approx(2).epsilon(0.01));
   CHECK(good.density - good.held_out < 30);
   CHECK(bad.density - bad.held_out > 100);
   same.bounds = {{-1, 1.5}};
-  CHECK(rosin::fit_design(same, 0).solution.shared[0] == doctest::Approx(1.5).epsilon(1e-4));
+  CHECK(rosin::fit_design(same, 0).solution.shared[0] == test::approx(1.5).epsilon(1e-4));
   rosin::stick_design one{{same.rows[0]}, {{-9, 9}}};  // a single take is predicted half from half
   CHECK(std::abs(rosin::fit_design(one, 0).density - rosin::fit_design(one, 0).held_out) < 30);
 }

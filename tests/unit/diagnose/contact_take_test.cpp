@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 TEST_CASE("contact take: what was found becomes part of the model") {
   rosin::contact_hypothesis rod{.effect = "rod-resonance",
                                 .parameters = {{"frequency_Hz", 1500, 1}, {"q", 17, 1}, {"mass_kg", 0.002, 1e-4}}};
@@ -22,9 +24,9 @@ TEST_CASE("contact take: what was found becomes part of the model") {
 
 TEST_CASE("contact take: intervals, and evidence that counts parameters") {
   const rosin::contact_parameter p{"q", 10, 2};
-  CHECK(p.ci95()[0] == doctest::Approx(10 - 3.92));
-  CHECK(p.ci95()[1] == doctest::Approx(10 + 3.92));
+  CHECK(p.ci95()[0] == test::approx(10 - 3.92));
+  CHECK(p.ci95()[1] == test::approx(10 + 3.92));
   rosin::contact_hypothesis h{.effect = "creep"};
   h.gain = 50, h.free_parameters = 2;
-  CHECK(h.evidence(1000) == doctest::Approx(50 - std::log(1000.0)));
+  CHECK(h.evidence(1000) == test::approx(50 - std::log(1000.0)));
 }

@@ -5,6 +5,7 @@
 
 #include "contact_rigs.hpp"
 #include "slips_by_hand.hpp"
+#include "support/approx.hpp"
 
 namespace {
 
@@ -39,7 +40,7 @@ TEST_CASE("friction laws: the law that made the force explains it, on takes it h
     CHECK(right.fit.held_out > wrong.fit.held_out + 500);
     if (thermal) {
       CHECK(heat.rates.capacity_power == 0);
-      CHECK(heat.rates.conduction_1_s + 0.5 * heat.rates.exchange_1_m == doctest::Approx(400 + 0.5 * 2500).epsilon(0.4));
+      CHECK(heat.rates.conduction_1_s + 0.5 * heat.rates.exchange_1_m == test::approx(400 + 0.5 * 2500).epsilon(0.4));
     }
   }
 }

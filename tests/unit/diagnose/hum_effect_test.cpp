@@ -7,6 +7,8 @@
 
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double hum_rate_Hz = 20000, hum_begin_s = 0.0123;
@@ -46,7 +48,7 @@ TEST_CASE("hum: what is left over tells where to begin, in that take alone") {
   double third = 0;
   for (const auto& line : here.hum)
     if (line.frequency_Hz == 180) third = std::abs(line.amplitude_N[0]);
-  CHECK(third == doctest::Approx(0.0012).epsilon(0.4));
+  CHECK(third == test::approx(0.0012).epsilon(0.4));
 }
 
 TEST_CASE("hum: noise is not taken for it, nor another mains' frequency") {

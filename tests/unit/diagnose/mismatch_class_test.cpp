@@ -4,6 +4,7 @@
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <rosin/simulate/burdened_signals.hpp>
 
@@ -40,8 +41,8 @@ rosin::plucking_force seen(const rosin::rig_burden& burden, double release_durat
 TEST_CASE("mismatch class: of a string as declared both versions are a step, to the noise") {
   const auto ideal = seen({});
   CHECK_FALSE(ideal.kind());
-  CHECK(ideal.parting_N == doctest::Approx(ideal.parting_noise_N).epsilon(0.15));
-  CHECK(ideal.shape_N == doctest::Approx(ideal.shape_noise_N).epsilon(0.2));
+  CHECK(ideal.parting_N == test::approx(ideal.parting_noise_N).epsilon(0.15));
+  CHECK(ideal.shape_N == test::approx(ideal.shape_noise_N).epsilon(0.2));
 }
 
 TEST_CASE("mismatch class: what the wire does both versions agree on" * doctest::test_suite("long")) {

@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double map_rate_Hz = 128e3, map_begin_s = 0.0042;
@@ -38,7 +40,7 @@ TEST_CASE("mismatch map: waves arrive as on a string that is drawn with its mirr
     std::sort(ways.begin(), ways.end());
     const rosin::echo_times when{0.01, 0.002, d};
     for (int echo = 1; echo <= 12; ++echo) {
-      CHECK(when.arrival_s(echo) == doctest::Approx(0.01 + 0.001 * ways[static_cast<std::size_t>(echo - 1)]));
+      CHECK(when.arrival_s(echo) == test::approx(0.01 + 0.001 * ways[static_cast<std::size_t>(echo - 1)]));
       CHECK(when.at(when.arrival_s(echo) + 1e-9) == echo);
       CHECK(when.at(when.arrival_s(echo) - 1e-9) == echo - 1);
     }
@@ -55,7 +57,7 @@ TEST_CASE("mismatch map: noise is one everywhere, the rows follow each other wit
     REQUIRE(channel.time_s.size() == channel.echo.size() + 1);
     CHECK(std::is_sorted(channel.time_s.begin(), channel.time_s.end()));
     CHECK(channel.time_s.front() == map_begin_s);
-    CHECK(channel.time_s.back() == doctest::Approx(map_begin_s + 0.06));
+    CHECK(channel.time_s.back() == test::approx(map_begin_s + 0.06));
     const auto top = channel.over_noise.rightCols(1);  // twenty independent samples a cell at least, the last two thousand
     CHECK((top.array() - 1).abs().maxCoeff() < 0.6);
     CHECK(std::abs(top.mean() - 1) < 0.05);

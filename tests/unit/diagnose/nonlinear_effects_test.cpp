@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 const rosin::string_facts facts{
@@ -25,7 +27,7 @@ TEST_CASE("a curved sensor is straightened exactly") {
   v[rosin::pluck_layout::gain_far] = std::log(1.03);
   e.undo(takes, {}, layout, v, 0.04);
   for (std::size_t i = 0; i < force.size(); ++i) {
-    CHECK(takes[0].force_N[1][i] == doctest::Approx(1.03 * force[i]).epsilon(1e-12));
+    CHECK(takes[0].force_N[1][i] == test::approx(1.03 * force[i]).scale(1).epsilon(1e-12));
     CHECK(takes[0].force_N[0][i] == force[i]);
   }
 }
@@ -77,7 +79,7 @@ TEST_CASE("what stretching puts in is taken out: larger with the square of the p
     for (std::size_t i = 300; i < 900; ++i) power += std::pow(takes[0].force_N[0][i], 2);
     return std::sqrt(power) / newtons;
   };
-  CHECK(change(0.2) / change(0.1) == doctest::Approx(4).epsilon(0.05));
+  CHECK(change(0.2) / change(0.1) == test::approx(4).epsilon(0.05));
 }
 
 TEST_CASE("what a sensor feels of the tension is taken out, before the release and after") {
@@ -93,8 +95,8 @@ TEST_CASE("what a sensor feels of the tension is taken out, before the release a
   const auto& far = takes[0].force_N[1];
   const double tension = facts.impedance_Ns_m * 2 * facts.length_m * facts.fundamental_Hz,
                held = 0.5 * 0.3 * 0.7 * std::pow(0.8 / tension, 2) * 5e3;
-  CHECK(far[10] == doctest::Approx(-held).epsilon(0.02));
-  CHECK(far[257] == doctest::Approx(-held).epsilon(0.05));  // at once after the release
+  CHECK(far[10] == test::approx(-held).epsilon(0.02));
+  CHECK(far[257] == test::approx(-held).epsilon(0.05));  // at once after the release
   double least = 0, most = -1;
   for (std::size_t i = 400; i < 800; ++i) least = std::min(least, far[i]), most = std::max(most, far[i]);
   CHECK(most > -0.06 / 0.21 * held);  // slopes of 0.2 and -0.3 a quarter period on, of 0.7 and -0.3 before
@@ -161,5 +163,5 @@ TEST_CASE("stretching as the channels record it: behind a high-pass, late, leaki
   rosin::pass_sensors(expected, heard, take.rate_Hz);
   const auto out = taken_out(heard);
   for (std::size_t c = 0; c < 2; ++c)
-    for (std::size_t i = 300; i < 1800; i += 37) CHECK(out[c][i] == doctest::Approx(expected[c][i]).epsilon(0.01).scale(0.02));
+    for (std::size_t i = 300; i < 1800; i += 37) CHECK(out[c][i] == test::approx(expected[c][i]).epsilon(0.01).scale(0.02));
 }

@@ -3,6 +3,7 @@
 #include <rosin/diagnose/odd_pluck.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <doctest/doctest.h>
 
@@ -43,7 +44,7 @@ TEST_CASE("odd pluck: samples that a recorder lost are found, with their number 
   CHECK(odd->take.name == "kept");
   CHECK_FALSE(odd->strongest);
   CHECK(odd->before > 20 * odd->floor);
-  CHECK(odd->time_s[0] * odd->take.rate_Hz == doctest::Approx(at).epsilon(0.05));
+  CHECK(odd->time_s[0] * odd->take.rate_Hz == test::approx(at).epsilon(0.05));
   REQUIRE(odd->lost);
   CHECK(odd->lost->count == count);
   CHECK(std::abs(odd->lost->time_s * odd->take.rate_Hz - at) < 2.5 * odd->lost->sd_s * odd->take.rate_Hz);
@@ -90,7 +91,7 @@ TEST_CASE("odd pluck: of three at places of their own the one that was made else
   REQUIRE(odd);
   CHECK(odd->take.name == "kept");
   REQUIRE(odd->moved);
-  CHECK(odd->moved->position == doctest::Approx(0.4).epsilon(1e-3));
+  CHECK(odd->moved->position == test::approx(0.4).epsilon(1e-3));
   p.held[0].position = 0.4025;
   CHECK_FALSE(odd_of(p.takes, p.held));
 }
@@ -104,5 +105,5 @@ TEST_CASE("odd pluck: the strongest rings a thousandth higher" * doctest::test_s
   CHECK(odd->strongest);
   CHECK_FALSE(odd->lost);
   CHECK_FALSE(odd->moved);
-  CHECK(odd->own_fundamental_Hz / odd->others.best.value[0] - 1 == doctest::Approx(1e-3).epsilon(0.01));
+  CHECK(odd->own_fundamental_Hz / odd->others.best.value[0] - 1 == test::approx(1e-3).epsilon(0.01));
 }

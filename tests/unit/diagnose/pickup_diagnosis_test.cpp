@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "pickup_plucks.hpp"
+#include "support/approx.hpp"
 
 using namespace rosin;
 
@@ -23,7 +24,7 @@ pickup_diagnosis diagnosed(rosin_test::heard_string s, double force_N = 0.3) {
 void check_named(const pickup_diagnosis& d, const char* effect, std::size_t which, double truth, double tolerance) {
   REQUIRE(d.missing.size() == 1);
   CHECK(d.missing[0].effect == effect);
-  CHECK(d.missing[0].values[which].value == doctest::Approx(truth).epsilon(tolerance));
+  CHECK(d.missing[0].values[which].value == test::approx(truth).epsilon(tolerance));
   CHECK(d.explained);
   CHECK(d.after < 0.5 * d.before);
 }
@@ -50,7 +51,7 @@ TEST_CASE("diagnose_pickups: what is concealed is named, alone, from one pluck, 
   const auto glide = diagnosed(s, 2);
   REQUIRE(glide.missing.size() == 1);
   CHECK(glide.missing[0].effect == "tension-modulation");
-  CHECK(16 * std::pow(s.tension_N, 3) * glide.glide_per_power == doctest::Approx(4000).epsilon(0.07));
+  CHECK(16 * std::pow(s.tension_N, 3) * glide.glide_per_power == test::approx(4000).epsilon(0.07));
 }
 
 TEST_CASE("diagnose_pickups: an effect that the catalogue is not to know ends unexplained") {
@@ -81,7 +82,7 @@ TEST_CASE("diagnose_pickups: a hum close to a partial does not bend it") {
   CHECK(d.after < 1.3 * d.floor);
   const auto* first = d.table.find(1);
   REQUIRE(first != nullptr);
-  CHECK(first->decay_per_s == doctest::Approx(3.14159265358979 * 212 / s.quality).epsilon(0.01));
+  CHECK(first->decay_per_s == test::approx(3.14159265358979 * 212 / s.quality).epsilon(0.01));
 }
 
 TEST_CASE("diagnose_pickups: partials that a bead has moved far off are found where it foretells them" *

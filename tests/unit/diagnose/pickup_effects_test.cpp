@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "pickup_tables.hpp"
+#include "support/approx.hpp"
 
 using namespace rosin;
 
@@ -17,7 +18,7 @@ void check_found(const char* name, const pickup_law& truth, double pickup_law::*
   for (const auto& e : law_effects(200, 16)) {
     const fitted_law f = with_effect(table, base, e);
     if (evidence_of(f, 16) > best) best = evidence_of(f, 16), likeliest = e.name;
-    if (e.name == name) CHECK(f.law.*what == doctest::Approx(truth.*what).epsilon(tolerance));
+    if (e.name == name) CHECK(f.law.*what == test::approx(truth.*what).epsilon(tolerance));
   }
   CHECK(likeliest == name);
   CHECK(best > evidence_of(base, 16) + 20);

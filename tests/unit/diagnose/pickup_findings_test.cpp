@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 using namespace rosin;
 
 TEST_CASE("pickup_namer: strays become hum and strings, and evidence adds up") {
@@ -16,17 +18,17 @@ TEST_CASE("pickup_namer: strays become hum and strings, and evidence adds up") {
   detail::pickup_namer{d, ask}.name_all();
   REQUIRE(d.missing.size() == 3);
   CHECK(d.missing[0].effect == "mains-hum");
-  CHECK(d.missing[1].values[0].value == doctest::Approx(247));
+  CHECK(d.missing[1].values[0].value == test::approx(247));
   CHECK(d.missing[2].effect == "sympathetic-string");
-  CHECK(d.missing[2].gain == doctest::Approx(490));  // with its second partial
-  CHECK(d.missing[2].values[0].value == doctest::Approx(329.6));
+  CHECK(d.missing[2].gain == test::approx(490));  // with its second partial
+  CHECK(d.missing[2].values[0].value == test::approx(329.6));
   REQUIRE(d.ranking.size() > 2);
   CHECK(d.ranking.front().first.size() == 3);
   CHECK(d.ranking.front().second == 0);
   const auto stiff = std::find_if(d.ranking.begin(), d.ranking.end(),
                                   [](const auto& r) { return r.first == std::vector<std::string>{"bending-stiffness"}; });
   REQUIRE(stiff != d.ranking.end());
-  CHECK(stiff->second == doctest::Approx(3.0 - 820));
+  CHECK(stiff->second == test::approx(3.0 - 820));
 }
 
 TEST_CASE("pickup_question: what is declared, or is not to be known, is not asked for") {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "pickup_tables.hpp"
+#include "support/approx.hpp"
 
 using namespace rosin;
 
@@ -23,7 +24,7 @@ TEST_CASE("fit_law: intervals of pitch, loss and stiffness cover the truth, with
       inside += std::abs(f.law.fundamental_Hz - 200) < 2 * f.sd_of("fundamental_Hz");
       inside += std::abs(f.law.inharmonicity - 1e-4) < 2 * f.sd_of("inharmonicity");
       inside += std::abs(f.law.inverse_q - 1e-3) < 2 * f.sd_of("inverse_quality");
-      if (scatter > 0) CHECK(f.scatter_decay == doctest::Approx(0.05).epsilon(0.6));
+      if (scatter > 0) CHECK(f.scatter_decay == test::approx(0.05).epsilon(0.6));
     }
     CHECK(inside >= 105);  // of 120
     CHECK(inside < 120);

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "pickup_plucks.hpp"
+#include "support/approx.hpp"
 
 using namespace rosin;
 
@@ -17,7 +18,7 @@ TEST_CASE("find_pair: detuning and coupling of a string in two planes") {
   const pair_found p = find_pair(tracks);
   CHECK(p.gain > 1000);
   CHECK(std::abs(p.detuning + 0.0015) < 4 * p.sd + 1e-6);
-  CHECK(p.coupling == doctest::Approx(0.3).epsilon(0.1));
+  CHECK(p.coupling == test::approx(0.3).epsilon(0.1));
   CHECK(p.agreeing > 0.8);
 }
 
@@ -29,8 +30,8 @@ TEST_CASE("find_pair: a weak second line as strong as it is, however far from th
   std::vector<const partial_track*> tracks;
   for (const auto& t : r->tracks) tracks.push_back(&t);
   const pair_found p = find_pair(tracks);
-  CHECK(p.detuning == doctest::Approx(0.006).epsilon(1e-3));
-  CHECK(p.coupling == doctest::Approx(0.1).epsilon(0.02));
+  CHECK(p.detuning == test::approx(0.006).epsilon(1e-3));
+  CHECK(p.coupling == test::approx(0.1).epsilon(0.02));
 }
 
 TEST_CASE("find_pair: little to find in single lines") {

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 using namespace rosin;
 
 constexpr double pi = 3.14159265358979323846;
@@ -12,8 +14,8 @@ TEST_CASE("pickup_pole: a stiff string with the loss law") {
   const pickup_law l{.fundamental_Hz = 200, .inharmonicity = 1e-4, .inverse_q = 1e-3, .internal_s = 1e-7, .air_sqrt_Hz = 0.01};
   const auto s = pickup_pole(l, 7);
   const double f = 7 * 200 * std::sqrt(1 + 1e-4 * 49);
-  CHECK(s.imag() == doctest::Approx(2 * pi * f).epsilon(1e-12));
-  CHECK(s.real() == doctest::Approx(-pi * f * (1e-3 + 1e-7 * f + 0.01 / std::sqrt(f))).epsilon(1e-12));
+  CHECK(s.imag() == test::approx(2 * pi * f).epsilon(1e-12));
+  CHECK(s.real() == test::approx(-pi * f * (1e-3 + 1e-7 * f + 0.01 / std::sqrt(f))).epsilon(1e-12));
 }
 
 TEST_CASE("pickup_pole: a heavy bead in the middle of a flexible string is known in closed form") {
@@ -21,9 +23,8 @@ TEST_CASE("pickup_pole: a heavy bead in the middle of a flexible string is known
   const double ratio = 0.3;
   const auto s = pickup_pole({.fundamental_Hz = 100, .bead_position = 0.5, .bead_mass = ratio}, 1);
   const double half = pi * s.imag() / (2 * pi * 100) / 2;
-  CHECK(1 / std::tan(half) == doctest::Approx(ratio * half).epsilon(1e-9));
-  CHECK(pickup_pole({.fundamental_Hz = 100, .bead_position = 0.5, .bead_mass = ratio}, 2).imag() ==
-        doctest::Approx(2 * pi * 200));
+  CHECK(1 / std::tan(half) == test::approx(ratio * half).epsilon(1e-9));
+  CHECK(pickup_pole({.fundamental_Hz = 100, .bead_position = 0.5, .bead_mass = ratio}, 2).imag() == test::approx(2 * pi * 200));
 }
 
 TEST_CASE("pickup_pole: little loads shift as Rayleigh has it, stiff or not") {
@@ -34,8 +35,8 @@ TEST_CASE("pickup_pole: little loads shift as Rayleigh has it, stiff or not") {
     bead.bead_mass = finger.finger_resistance = 1e-5;
     for (const int n : {1, 3, 8}) {
       const double w = pickup_pole(plain, n).imag(), shape = std::pow(std::sin(n * pi * 0.2), 2);
-      CHECK(pickup_pole(bead, n).imag() / w - 1 == doctest::Approx(-1e-5 * shape).epsilon(1e-3));
-      CHECK(-pickup_pole(finger, n).real() == doctest::Approx(2 * 100 * 1e-5 * shape).epsilon(1e-3));
+      CHECK(pickup_pole(bead, n).imag() / w - 1 == test::approx(-1e-5 * shape).epsilon(1e-3));
+      CHECK(-pickup_pole(finger, n).real() == test::approx(2 * 100 * 1e-5 * shape).epsilon(1e-3));
     }
   }
 }
@@ -82,7 +83,7 @@ TEST_CASE("pickup_pole: modes that lose with all loads on them ring as their fre
       .fundamental_Hz = 437, .inharmonicity = 1e-4, .inverse_q = 1e-3, .loaded_loss = 1, .bead_position = 0.3, .bead_mass = 0.02};
   for (const int n : {1, 4, 9}) {
     const auto s = pickup_pole(l, n);
-    CHECK(-2 * s.real() / s.imag() == doctest::Approx(1e-3).epsilon(1e-4));
+    CHECK(-2 * s.real() / s.imag() == test::approx(1e-3).epsilon(1e-4));
   }
   pickup_law bare = l;
   bare.loaded_loss = 0;

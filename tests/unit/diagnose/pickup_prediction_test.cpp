@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "pickup_plucks.hpp"
+#include "support/approx.hpp"
 
 using namespace rosin;
 
@@ -20,8 +21,8 @@ TEST_CASE("left_by_lines: true poles leave the noise, wrong ones more") {
         0.01 * normal());
   }
   const auto left = left_by_lines(stretch, {{1, s}}, &glide);
-  CHECK(rms_level(left) == doctest::Approx(0.01).epsilon(0.05));
-  CHECK(quietest_piece(left, 8000) == doctest::Approx(0.01).epsilon(0.2));
+  CHECK(rms_level(left) == test::approx(0.01).epsilon(0.05));
+  CHECK(quietest_piece(left, 8000) == test::approx(0.01).epsilon(0.2));
   CHECK(rms_level(left_by_lines(stretch, {{1, s}})) > 0.03);
   CHECK(rms_level(left_by_lines(stretch, {{1, wrong}}, &glide)) > 0.03);
 }
@@ -31,5 +32,5 @@ TEST_CASE("halves_of: one recording in two that do not overlap") {
   const auto [early, late] = halves_of(s.pluck("a", 0.13, 1, 1), 220);
   CHECK(early.to_s == late.from_s);
   CHECK(late.to_s <= 1.2);
-  CHECK(early.to_s == doctest::Approx(0.65).epsilon(0.1));
+  CHECK(early.to_s == test::approx(0.65).epsilon(0.1));
 }

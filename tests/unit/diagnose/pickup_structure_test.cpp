@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "pickup_plucks.hpp"
+#include "support/approx.hpp"
 
 using namespace rosin;
 
@@ -33,7 +34,7 @@ TEST_CASE("structures_of: nothing, a glide, a pair, and both" * doctest::test_su
   const auto both = likeliest(s);
   CHECK(both.glides);
   CHECK(both.paired);
-  CHECK(both.pair.detuning == doctest::Approx(0.002).epsilon(0.02));
+  CHECK(both.pair.detuning == test::approx(0.002).epsilon(0.02));
 
   s.burden.axial_stiffness_N = 0;
   const auto pair = likeliest(s);

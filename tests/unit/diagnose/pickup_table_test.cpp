@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "pickup_plucks.hpp"
+#include "support/approx.hpp"
 
 using namespace rosin;
 
@@ -15,7 +16,7 @@ TEST_CASE("table_of: two plucks, one of them tuned higher, become one table") {
   REQUIRE(b);
   const line_table t = table_of({*a, *b}, {});
   REQUIRE(t.offset.size() == 2);
-  CHECK((1 + t.offset[1]) / (1 + t.offset[0]) == doctest::Approx(1.001).epsilon(1e-6));
+  CHECK((1 + t.offset[1]) / (1 + t.offset[0]) == test::approx(1.001).epsilon(1e-6));
   const string_line* five = t.find(5);
   REQUIRE(five != nullptr);
   CHECK(std::abs(five->decay_per_s - 3.14159265358979323846 * 5 * 220 / 900) < 4 * five->decay_sd + 1e-3);
@@ -26,6 +27,6 @@ TEST_CASE("mean_of_several: takes that disagree widen the error") {
   detail::mean_of_several agree, differ;
   agree.add(1.0, 0.1), agree.add(1.05, 0.1);
   differ.add(1.0, 0.1), differ.add(3.0, 0.1);
-  CHECK(agree.sd() == doctest::Approx(0.1 / std::sqrt(2.0)));
-  CHECK(differ.sd() == doctest::Approx(1.0));
+  CHECK(agree.sd() == test::approx(0.1 / std::sqrt(2.0)));
+  CHECK(differ.sd() == test::approx(1.0));
 }

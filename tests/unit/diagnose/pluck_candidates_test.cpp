@@ -2,6 +2,7 @@
 #include <rosin/diagnose/pluck_candidates.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <doctest/doctest.h>
 
@@ -23,8 +24,8 @@ TEST_CASE("of several effects the one that is there comes first") {
       false, {1e-3, 1e-3});
   REQUIRE(fits.size() > 1);
   CHECK(fits[0].effects[0].id() == "sensor-resonance@near");
-  CHECK(std::exp(fits[0].value[layout.size()]) == doctest::Approx(21e3).epsilon(1e-4));
-  CHECK(std::exp(fits[0].value[layout.size() + 1]) == doctest::Approx(14).epsilon(1e-3));
+  CHECK(std::exp(fits[0].value[layout.size()]) == test::approx(21e3).epsilon(1e-4));
+  CHECK(std::exp(fits[0].value[layout.size() + 1]) == test::approx(14).epsilon(1e-3));
 }
 
 TEST_CASE(
@@ -64,9 +65,9 @@ TEST_CASE("what no parameter scales is sought from little on: an effect that har
     REQUIRE(fits.size() == 1);
     return std::exp(fits[0].value[layout.size()]) / there;
   };
-  CHECK(found(rosin::slow_release_effect(facts), 1.2e-6) == doctest::Approx(1).epsilon(0.2));
-  CHECK(found(rosin::pluck_width_effect(facts), 2e-4) == doctest::Approx(1).epsilon(0.2));
-  CHECK(found(rosin::ac_coupling_effect(facts), 0.05) == doctest::Approx(1).epsilon(0.2));
+  CHECK(found(rosin::slow_release_effect(facts), 1.2e-6) == test::approx(1).epsilon(0.2));
+  CHECK(found(rosin::pluck_width_effect(facts), 2e-4) == test::approx(1).epsilon(0.2));
+  CHECK(found(rosin::ac_coupling_effect(facts), 0.05) == test::approx(1).epsilon(0.2));
 }
 
 TEST_CASE("a channel that comes late is no sensor that rings above the band, though that delays it as much") {
@@ -86,5 +87,5 @@ TEST_CASE("a channel that comes late is no sensor that rings above the band, tho
   CHECK(tried(rosin::skew_effect(facts), {3.8e-6}).empty());
   const auto seen = tried(rosin::sensor_resonance_effect(facts, 1), {std::log(54e3), std::log(9.0)});
   REQUIRE(seen.size() == 1);
-  CHECK(std::exp(seen[0].value[layout.size()]) == doctest::Approx(54e3).epsilon(0.01));
+  CHECK(std::exp(seen[0].value[layout.size()]) == test::approx(54e3).epsilon(0.01));
 }

@@ -3,6 +3,7 @@
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <rosin/simulate/burdened_signals.hpp>
 
@@ -42,7 +43,7 @@ TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck
   REQUIRE(d->best.effects.size() == 1);
   CHECK(d->explained);
   CHECK(d->best.effects[0].id() == "slow-release");
-  CHECK(std::exp(d->best.value[d->data.layout.size()]) == doctest::Approx(slow).epsilon(0.02));
+  CHECK(std::exp(d->best.value[d->data.layout.size()]) == test::approx(slow).epsilon(0.02));
   CHECK(d->before > 3 * d->floor);
   CHECK(d->after < 1.2 * d->floor);
   CHECK(d->mismatch.residual_over_noise > 2);
@@ -105,8 +106,8 @@ TEST_CASE(
     CHECK(d->before > 10 * d->floor);
     CHECK(d->after < 1.05 * d->floor);
     const Eigen::VectorXd found = d->best.value.tail(d->best.value.size() - d->data.layout.size()).array().exp();
-    CHECK((heavy ? found[0] / 60 : found[0] * rig.string.impedance_Ns_m() / 0.003) == doctest::Approx(1).epsilon(0.003));
-    CHECK(found[1] == doctest::Approx(heavy ? 20 : 40).epsilon(0.02));
+    CHECK((heavy ? found[0] / 60 : found[0] * rig.string.impedance_Ns_m() / 0.003) == test::approx(1).epsilon(0.003));
+    CHECK(found[1] == test::approx(heavy ? 20 : 40).epsilon(0.02));
   }
 }
 
@@ -200,7 +201,7 @@ TEST_CASE("ends that are known to move are part of the declared model: nothing i
     REQUIRE(d->best.effects.size() == (slow > 0 ? 1 : 0));
     CHECK(d->after < 1.2 * d->floor);
     if (slow > 0) CHECK(d->best.effects[0].id() == "slow-release");
-    CHECK(d->data.layout.ends(d->best.value)[1].modes[0].frequency_Hz == doctest::Approx(2400).epsilon(3e-4));
+    CHECK(d->data.layout.ends(d->best.value)[1].modes[0].frequency_Hz == test::approx(2400).epsilon(3e-4));
   }
 }
 

@@ -2,6 +2,7 @@
 #include <rosin/diagnose/pluck_exchange.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <doctest/doctest.h>
 
@@ -33,7 +34,7 @@ TEST_CASE("an effect that a later one has made needless is given up") {
   const auto kept = rosin::exchanged(plucks.data, plucks.both, {plucks.late, plucks.cross}, 1, plucks.noise, any);
   REQUIRE(kept.effects.size() == 1);
   CHECK(kept.effects[0].id() == "channel-skew");
-  CHECK(kept.value[plucks.layout.size()] == doctest::Approx(2e-6).epsilon(0.01));
+  CHECK(kept.value[plucks.layout.size()] == test::approx(2e-6).epsilon(0.01));
 }
 
 TEST_CASE("an effect that is there, but not worth a name beside a later one, is given up") {

@@ -5,6 +5,7 @@
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <doctest/doctest.h>
 
@@ -26,7 +27,7 @@ TEST_CASE(
   for (const auto& h : d->ranking) {
     REQUIRE(h.left);
     CHECK(h.fit.effects.size() == h.ids.size());
-    if (h.ids == std::vector<std::string>{"slow-release"}) CHECK(*h.left == doctest::Approx(d->after).epsilon(0.02));
+    if (h.ids == std::vector<std::string>{"slow-release"}) CHECK(*h.left == test::approx(d->after).epsilon(0.02));
     else CHECK(*h.left > 3 * d->floor);
   }
 }

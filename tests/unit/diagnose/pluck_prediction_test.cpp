@@ -2,6 +2,7 @@
 #include <rosin/diagnose/pluck_prediction.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <doctest/doctest.h>
 
@@ -29,9 +30,9 @@ seen_plucks seen_as_made() {
 TEST_CASE("noise is told from what the recordings show before the release") {
   auto [layout, data, fit] = seen_as_made();
   const auto before = rosin::detail::noise_before_release(data, fit);
-  for (const double n : before.rms_N) CHECK(n == doctest::Approx(seen_noise_N).epsilon(0.12));  // some 600 samples
+  for (const double n : before.rms_N) CHECK(n == test::approx(seen_noise_N).epsilon(0.12));  // some 600 samples
   fit.value[layout.at(0, rosin::pluck_layout::strength)] += 0.1;  // how strong the steady force was is another matter
-  CHECK(rosin::detail::noise_before_release(data, fit).rms_N[0] == doctest::Approx(before.rms_N[0]));
+  CHECK(rosin::detail::noise_before_release(data, fit).rms_N[0] == test::approx(before.rms_N[0]));
 }
 
 TEST_CASE("a record that begins with the release says nothing of its noise, and then nothing is called noisier") {
@@ -66,9 +67,9 @@ TEST_CASE(
     const auto [left, floor, samples] = rosin::detail::predicted(p.data, p.fit, held, seen_noise_N);
     return left / floor;
   };
-  CHECK(left_over_floor(0.42) == doctest::Approx(1).epsilon(0.1));  // 0.3 of the others stands for 0.301
-  CHECK(left_over_floor(0.4203) == doctest::Approx(1).epsilon(0.1));
-  CHECK(left_over_floor(0.413) == doctest::Approx(1).epsilon(0.1));  // both a little off, to opposite sides
+  CHECK(left_over_floor(0.42) == test::approx(1).epsilon(0.1));  // 0.3 of the others stands for 0.301
+  CHECK(left_over_floor(0.4203) == test::approx(1).epsilon(0.1));
+  CHECK(left_over_floor(0.413) == test::approx(1).epsilon(0.1));  // both a little off, to opposite sides
   CHECK(left_over_floor(0.44) > 20);
   p.data.guess.position_tolerance = 0;
   CHECK(left_over_floor(0.4203) > 1.5);
@@ -96,6 +97,6 @@ TEST_CASE("for how long a string was held before the record nobody knows: what a
         rosin::detail::predicted(data, fit, test::scene_pluck(layout, effects, here, 0, seen_noise_N, 3), seen_noise_N);
     return left / floor;
   };
-  CHECK(left_over_floor({coupled}, {0, 0}, 0.3) == doctest::Approx(1).epsilon(0.1));
+  CHECK(left_over_floor({coupled}, {0, 0}, 0.3) == test::approx(1).epsilon(0.1));
   CHECK(left_over_floor({}, {0, 0}, 0.3) > 20);  // the offset of a sensor that is DC coupled does not change by itself
 }

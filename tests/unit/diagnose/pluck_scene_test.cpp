@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 using complex = std::complex<double>;
 
 TEST_CASE("a sensor's pole is where its response has no bound, and at rest it passes everything") {
@@ -13,15 +15,15 @@ TEST_CASE("a sensor's pole is where its response has no bound, and at rest it pa
   CHECK(std::abs(sensor(s * (1.0 + 1e-9))) > 1e6);
   CHECK(std::abs(sensor(0.0) - 1.0) < 1e-12);
   const double w = 2 * std::numbers::pi * 18e3;
-  CHECK(std::abs(sensor({0, w})) == doctest::Approx(11));
+  CHECK(std::abs(sensor({0, w})) == test::approx(11));
 }
 
 TEST_CASE("a high-pass and a delay act as they are written") {
   const rosin::sensor_response sensor{.corner_Hz = 2, .delay_s = 1e-6};
   const double w = 2 * std::numbers::pi * 2;
-  CHECK(std::abs(sensor({0, w})) == doctest::Approx(std::sqrt(0.5)));
+  CHECK(std::abs(sensor({0, w})) == test::approx(std::sqrt(0.5)));
   const double high = 2 * std::numbers::pi * 5000;
-  CHECK(std::arg(sensor({0, high})) == doctest::Approx(-high * 1e-6 + std::atan(w / high)));
+  CHECK(std::arg(sensor({0, high})) == test::approx(-high * 1e-6 + std::atan(w / high)));
 }
 
 TEST_CASE("ends that give way take power and never return it") {
@@ -31,13 +33,13 @@ TEST_CASE("ends that give way take power and never return it") {
   for (double f = 10; f < 60e3; f *= 1.1) CHECK(end.admittance({0, 2 * std::numbers::pi * f}).real() > 0);
   const double w = 2 * std::numbers::pi * 900;
   CHECK(rosin::yielding_end{.modes = {{.frequency_Hz = 900, .q = 12, .per_mass_per_s = 50}}}.admittance({0, w}).real() ==
-        doctest::Approx(50 * 12 / w));
+        test::approx(50 * 12 / w));
 }
 
 TEST_CASE("a load on a bond is softer than the load, and hard as the bond when the load is heavy") {
   const rosin::scatterer held{.mass_s = 1e-4, .bond_s = 1e-6};
   const complex s{0, 2 * std::numbers::pi * 1e6};
-  CHECK(std::abs(held.impedance(s)) == doctest::Approx(1 / std::abs(s * 1e-6)).epsilon(1e-2));
+  CHECK(std::abs(held.impedance(s)) == test::approx(1 / std::abs(s * 1e-6)).epsilon(1e-2));
   CHECK(rosin::pluck_scene{}.plain_string());
 }
 
@@ -46,5 +48,5 @@ TEST_CASE("a damper that answers early has mass, an end that answers late gives 
   const complex s{0, 2 * std::numbers::pi * 5e3};
   CHECK(std::abs(damper.impedance(s) - massive.impedance(s)) < 1e-3 * std::abs(damper.impedance(s)));
   const rosin::yielding_end late{.modes = {{.frequency_Hz = 900, .q = 1000, .per_mass_per_s = 50}}, .lag_s = 1e-6};
-  CHECK(late.admittance({0, 2 * std::numbers::pi * 20e3}).real() == doctest::Approx(-50 * 1e-6).epsilon(0.02));
+  CHECK(late.admittance({0, 2 * std::numbers::pi * 20e3}).real() == test::approx(-50 * 1e-6).epsilon(0.02));
 }

@@ -2,6 +2,7 @@
 #include <rosin/diagnose/pluck_score.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <rosin/diagnose/pluck_effects.hpp>
 
@@ -21,7 +22,7 @@ TEST_CASE("the score foretells strength and gain of a weak effect, and nothing o
                                                          160, 1e9, true, {3e-4, 3e-4});
   const rosin::pluck_score score(problem, test::values_of(layout));
   const auto skew = score({layout, {0, 0}, skewed}, {1e-9});
-  CHECK(skew.mix == doctest::Approx(40).epsilon(0.15));  // times the starting strength of 1 ns
+  CHECK(skew.mix == test::approx(40).epsilon(0.15));  // times the starting strength of 1 ns
   CHECK(skew.gain > 50);
   const auto crosstalk = score({layout, {0, 0}, {rosin::crosstalk_effect(facts)}}, {1e-5});
   CHECK(crosstalk.gain < 0.2 * skew.gain);

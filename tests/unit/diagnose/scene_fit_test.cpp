@@ -2,6 +2,7 @@
 #include <rosin/diagnose/scene_fit.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <rosin/diagnose/pluck_effects.hpp>
 
@@ -25,6 +26,6 @@ TEST_CASE("place and weight of a bead come back within their errors") {
   CHECK(std::abs(fit.value[layout.size() + 1] - 1e-7) < 4 * fit.sd[layout.size() + 1]);
   CHECK(fit.sd[layout.size()] < 1e-3);
   CHECK(fit.sd[layout.size() + 1] < 2e-9);
-  CHECK(fit.quality.noise[0] == doctest::Approx(3e-4).epsilon(0.05));
+  CHECK(fit.quality.noise[0] == test::approx(3e-4).epsilon(0.05));
   CHECK(fit.quality.misfit < 1.4);
 }

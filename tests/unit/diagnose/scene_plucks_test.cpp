@@ -2,6 +2,7 @@
 #include <rosin/diagnose/scene_plucks.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <rosin/diagnose/pluck_effects.hpp>
 
@@ -45,8 +46,8 @@ TEST_CASE("parameters of effects stand behind those of the plucks, in their unit
   v[layout.size()] = std::log(18e3), v[layout.size() + 1] = std::log(9), v[layout.size() + 2] = 0.4,
   v[layout.size() + 3] = 1.75e-6;
   const auto scene = model.scene(v, 0);
-  CHECK(scene.sensors[1].resonance_Hz == doctest::Approx(18e3));
-  CHECK(scene.scatterers[0].mass_s == doctest::Approx(1e-5));
+  CHECK(scene.sensors[1].resonance_Hz == test::approx(18e3));
+  CHECK(scene.scatterers[0].mass_s == test::approx(1e-5));
 }
 
 TEST_CASE("declared ends are in the scene, off by as much as the parameters say, and free once everything has settled") {
@@ -59,7 +60,7 @@ TEST_CASE("declared ends are in the scene, off by as much as the parameters say,
   const Eigen::Index first = layout.first_of_ends();
   v[first + 2] = 0.02;
   const rosin::scene_plucks model(layout, {0, 0}, {});
-  CHECK(model.scene(v, 0).ends[1].modes.at(0).per_mass_per_s == doctest::Approx(40 * std::exp(0.02)));
+  CHECK(model.scene(v, 0).ends[1].modes.at(0).per_mass_per_s == test::approx(40 * std::exp(0.02)));
   CHECK(model.scene(v, 0).ends[0].rigid());
   CHECK(model.is_free(first));
   CHECK_FALSE(rosin::scene_plucks(layout, {0, 0}, {}, rosin::freedom::no_corrections).is_free(first));

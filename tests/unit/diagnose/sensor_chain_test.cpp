@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double chain_rate = 128e3;
@@ -53,8 +55,8 @@ TEST_CASE("delay, high-pass and leakage, in the order in which the channels have
   late.insert(late.begin(), 2, 0.0), late.resize(force[0].size());
   for (auto* x : {&force[0], &late}) rosin::pass_ac_coupled(std::span(*x), 9, chain_rate);
   for (const std::size_t i : {700U, 1024U, 1300U, 2900U}) {
-    CHECK(passed[0][i] == doctest::Approx(force[0][i] + 0.1 * late[i]).epsilon(1e-6).scale(0.1));
-    CHECK(passed[1][i] == doctest::Approx(late[i] + 0.1 * force[0][i]).epsilon(1e-6).scale(0.1));
+    CHECK(passed[0][i] == test::approx(force[0][i] + 0.1 * late[i]).epsilon(1e-6).scale(0.1));
+    CHECK(passed[1][i] == test::approx(late[i] + 0.1 * force[0][i]).epsilon(1e-6).scale(0.1));
   }
 }
 

@@ -5,6 +5,8 @@
 
 #include <complex>
 
+#include "support/approx.hpp"
+
 TEST_CASE("stick columns: bristles are a spring with a delay") {
   const double f = 500, w = 2 * std::numbers::pi * f;
   CHECK(std::abs(rosin::bristle_bending(f, 0) - std::complex<double>(0, -1e-6 * w)) < 1e-12);
@@ -18,7 +20,7 @@ TEST_CASE("stick columns: a rod moves by its spring below its resonance, by its 
   const double slow = 2 * std::numbers::pi * 8, fast = 2 * std::numbers::pi * 80000;
   CHECK(std::abs(rod(8) - std::complex<double>(0, -slow / (0.003 * w0 * w0))) < 1e-3 * std::abs(rod(8)));
   CHECK(std::abs(rod(80000) - std::complex<double>(0, 1 / (fast * 0.003))) < 1e-3 * std::abs(rod(80000)));
-  CHECK(std::exp(-std::numbers::pi * 800 / 40 * rod.memory_s()) == doctest::Approx(1e-3));
+  CHECK(std::exp(-std::numbers::pi * 800 / 40 * rod.memory_s()) == test::approx(1e-3));
 }
 
 TEST_CASE("stick columns: a ripple is a share of the rod's speed; noise passes the window by three eighths of its power") {
@@ -26,9 +28,9 @@ TEST_CASE("stick columns: a ripple is a share of the rod's speed; noise passes t
   const rosin::stick_record record({force, velocity, 128e3, 0.2, {2e-4, 5e-4}, 0.17, 1e-3, 57600, 0.005});
   const auto wave = rosin::rod_wave(record, 320, 0.5 * std::numbers::pi);
   CHECK(wave.size() == record.size());
-  CHECK(wave[0] == doctest::Approx(0.2));
-  CHECK(wave[200] == doctest::Approx(-0.2));
+  CHECK(wave[0] == test::approx(0.2));
+  CHECK(wave[200] == test::approx(-0.2));
   const auto one = [](double) { return std::array<std::complex<double>, 2>{1, 0}; };
   CHECK(rosin::detail::noise_of_ends(one, {3e-4, 1}, 128e3, record.window()) ==
-        doctest::Approx(3e-4 * std::sqrt(0.375 * 2 * 57600 / 128e3)).epsilon(1e-3));
+        test::approx(3e-4 * std::sqrt(0.375 * 2 * 57600 / 128e3)).epsilon(1e-3));
 }

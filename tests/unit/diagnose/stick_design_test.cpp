@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 /// Two takes of 2 a - 3 b + a level of their own, with noise of a hundredth.
@@ -37,13 +39,13 @@ rosin::stick_design two_takes() {
 TEST_CASE("stick design: coefficients inside their bounds are found, those outside are held at the nearest") {
   auto d = two_takes();
   const auto free = rosin::fit_design(d, 1e-6);
-  CHECK(free.solution.shared[0] == doctest::Approx(2).epsilon(1e-3));
-  CHECK(free.solution.shared[1] == doctest::Approx(-3).epsilon(1e-3));
-  CHECK(free.solution.own[1][0] == doctest::Approx(-1).epsilon(2e-3));
+  CHECK(free.solution.shared[0] == test::approx(2).epsilon(1e-3));
+  CHECK(free.solution.shared[1] == test::approx(-3).epsilon(1e-3));
+  CHECK(free.solution.own[1][0] == test::approx(-1).epsilon(2e-3));
   CHECK(free.solution.scale < 0.012);
   d.bounds[1] = {-1, 1};
   const auto held = rosin::fit_design(d, 1e-6);
-  CHECK(held.solution.shared[1] == doctest::Approx(-1).epsilon(1e-6));
+  CHECK(held.solution.shared[1] == test::approx(-1).epsilon(1e-6));
   CHECK(held.density < free.density - 1000);
   CHECK(held.held_out < free.held_out - 1000);  // each take as the other predicts it
 }

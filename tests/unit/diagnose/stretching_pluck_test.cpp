@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 const rosin::ringing_string elastic{659.69, 6.49e-5, {900, 0, 0}, -1};
@@ -19,7 +21,7 @@ TEST_CASE("a string that is not stretched rings as its partials do") {
     for (std::size_t c = 0; c < 2; ++c) {
       double sum = 0;
       for (const auto& l : lines) sum += (l.residue[c] * std::exp(l.pole * (static_cast<double>(i) / 128e3 + 3e-6))).real();
-      CHECK(force[c][i] == doctest::Approx(sum).epsilon(2e-3).scale(0.3));
+      CHECK(force[c][i] == test::approx(sum).epsilon(2e-3).scale(0.3));
     }
 }
 
@@ -40,7 +42,7 @@ TEST_CASE(
       if (crossings++ == 0) first = last;
     }
   const double f = (crossings - 1) / ((last - first) * h);
-  CHECK(f / 100 - 1 == doctest::Approx(3 * stretch * amplitude * amplitude / 8).epsilon(0.02));
+  CHECK(f / 100 - 1 == test::approx(3 * stretch * amplitude * amplitude / 8).epsilon(0.02));
 }
 
 TEST_CASE("a string with the mean stretch rings nearly as the stretched one does: what is left to take out is small") {
@@ -66,14 +68,14 @@ TEST_CASE(
   const rosin::stretching_pluck pluck(ideal, at, slope, {90e3, 90e3}, 400);
   // Held at 0.3: slopes F (1 - at) / T and -F at / T.
   const double held = 0.5 * slope * slope * (at * (1 - at) * (1 - at) + (1 - at) * at * at);
-  CHECK(pluck.held_strain() == doctest::Approx(held).epsilon(0.01));
+  CHECK(pluck.held_strain() == test::approx(held).epsilon(0.01));
   const auto strain = pluck.unstretched_strain(0, 1 / rate, 400);  // one period
-  CHECK(strain[0] == doctest::Approx(held).epsilon(0.01));
+  CHECK(strain[0] == test::approx(held).epsilon(0.01));
   double mean = 0;
   for (const double s : strain) mean += s / 400;
-  CHECK(mean == doctest::Approx(held / 2).epsilon(0.02));
+  CHECK(mean == test::approx(held / 2).epsilon(0.02));
   for (std::size_t i = 0; i < 200; ++i)
-    CHECK(strain[i] == doctest::Approx(strain[i + 200]).epsilon(0.01).scale(held));  // twice a period
+    CHECK(strain[i] == test::approx(strain[i + 200]).epsilon(0.01).scale(held));  // twice a period
 }
 
 TEST_CASE("two planes of one tuning are one plane, and apart they are two strings as long as nothing stretches") {
@@ -88,9 +90,9 @@ TEST_CASE("two planes of one tuning are one plane, and apart they are two string
   const auto both = rosin::stretching_pluck(elastic, 0.3, slope, seen, 100, {0.005, 0.2}).run(0, 0, sample_s, 4, 1000);
   for (const std::size_t i : {0U, 100U, 517U, 999U})
     for (std::size_t c = 0; c < 2; ++c) {
-      CHECK(alike[c][i] == doctest::Approx(one[c][i]).epsilon(1e-9).scale(1));
-      CHECK(against[c][i] == doctest::Approx(one[c][i]).epsilon(1e-9).scale(1));
-      CHECK(both[c][i] == doctest::Approx((still[c][i] + 0.2 * other[c][i]) / 1.2).epsilon(1e-9).scale(1));
+      CHECK(alike[c][i] == test::approx(one[c][i]).epsilon(1e-9).scale(1));
+      CHECK(against[c][i] == test::approx(one[c][i]).epsilon(1e-9).scale(1));
+      CHECK(both[c][i] == test::approx((still[c][i] + 0.2 * other[c][i]) / 1.2).epsilon(1e-9).scale(1));
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 rosin::pluck_scene scene() {
@@ -92,8 +94,8 @@ TEST_CASE("a support that resonates brings one pole of its own, and the pluck st
   CHECK(poles.size() == rosin::string_poles(scene(), 50e3, 200).size() + 1);
   double near = 0, far = 0;
   for (const auto& line : rosin::decay_lines(with, 0.3264, poles)) near += line.residue[0].real(), far += line.residue[1].real();
-  CHECK(near == doctest::Approx(1 - 0.3264).epsilon(0.03));  // as far as a series of 70 terms goes
-  CHECK(far == doctest::Approx(0.3264).epsilon(0.03));
+  CHECK(near == test::approx(1 - 0.3264).epsilon(0.03));  // as far as a series of 70 terms goes
+  CHECK(far == test::approx(0.3264).epsilon(0.03));
 }
 
 TEST_CASE("modes of an end that all but let go of it have residues as small, and leave the string's alone") {
@@ -130,9 +132,9 @@ TEST_CASE(
     REQUIRE(lines.size() > 80);
     for (std::size_t i = 0; i < 80; i += 7) {
       const auto mode = mode_between(clamping, static_cast<int>(i) + 1, 4e-6, 0.27);
-      CHECK(lines[i].pole.imag() == doctest::Approx(mode.omega).epsilon(1e-7));
+      CHECK(lines[i].pole.imag() == test::approx(mode.omega).epsilon(1e-7));
       for (std::size_t e = 0; e < 2; ++e)
-        CHECK(lines[i].residue[e].real() == doctest::Approx(mode.force[e]).epsilon(1e-5).scale(0.01));
+        CHECK(lines[i].residue[e].real() == test::approx(mode.force[e]).epsilon(1e-5).scale(0.01));
     }
   }
 }
@@ -149,7 +151,7 @@ TEST_CASE("while the wire holds a clamped string its ends share the force as tho
       sum[e] += mode.force[e] * std::pow(std::sin(n * std::numbers::pi / 800) / (n * std::numbers::pi / 800), 2);
   }
   const auto held = rosin::held_forces(s, 0.27);
-  for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-5));
+  for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == test::approx(held[e]).epsilon(2e-5));
 }
 
 TEST_CASE(
@@ -186,14 +188,14 @@ TEST_CASE("an end that is damped and hardly held: what relaxes is one of the lin
                       .per_mass_per_s = conductance * fast}};
   const auto poles = rosin::string_poles(s, 120e3, 500);
   REQUIRE(poles.front().imag() == 0);
-  CHECK(poles.front().real() == doctest::Approx(-(corner + 600 * conductance)).epsilon(0.01));
+  CHECK(poles.front().real() == test::approx(-(corner + 600 * conductance)).epsilon(0.01));
   // Of the static forces a triangle's sum of partials and the relaxation are left: F (1 - x, x) of a string longer by the end's
   // yield.
   const auto sum = sum_of(rosin::decay_lines(s, 0.3, poles), 120e3);
   const double longer = 600 * conductance / corner;
   const auto held = rosin::held_forces(s, 0.3);
-  CHECK(held[1] == doctest::Approx(0.3 / (1 + longer)));
-  for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-3));
+  CHECK(held[1] == test::approx(0.3 / (1 + longer)));
+  for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == test::approx(held[e]).epsilon(2e-3));
 }
 
 TEST_CASE("ends that are alike have poles of their own: all lines together are what the wire held") {
@@ -218,6 +220,6 @@ TEST_CASE("ends that are alike have poles of their own: all lines together are w
     CHECK(nearest > 0.01);
     const auto sum = sum_of(rosin::decay_lines(s, 0.35, poles), 300e3);
     const auto held = rosin::held_forces(s, 0.35);
-    for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == doctest::Approx(held[e]).epsilon(2e-3));
+    for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == test::approx(held[e]).epsilon(2e-3));
   }
 }

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using complex = std::complex<double>;
@@ -73,8 +75,8 @@ TEST_CASE("where the loaded string's modes lose by themselves, its poles are tho
   for (const int n : {1, 2, 4, 7, 11}) {
     const complex free = pole(lossless, {0, 2 * std::numbers::pi * lossless.string.partial_Hz(n)}),
                   turned = free * complex(1, 1.0 / (2 * 500));
-    CHECK(pole(loaded, free).real() / turned.real() == doctest::Approx(1).epsilon(2e-3));
-    CHECK(pole(loaded, free).imag() / turned.imag() == doctest::Approx(1).epsilon(1e-5));
+    CHECK(pole(loaded, free).real() / turned.real() == test::approx(1).epsilon(2e-3));
+    CHECK(pole(loaded, free).imag() / turned.imag() == test::approx(1).epsilon(1e-5));
     apart = std::max(apart, std::abs(pole(bare, free).real() / turned.real() - 1));
   }
   CHECK(apart > 0.02);  // as the bare string's modes lose, the loaded string's decay otherwise

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using complex = std::complex<double>;
@@ -73,10 +75,10 @@ TEST_CASE("loads belong to the side of the contact that they are on, in order fr
   const auto sides = rosin::sides_of(scene, {3e-4, 7e-4});
   REQUIRE(sides[0].loads.size() == 2);
   REQUIRE(sides[1].loads.size() == 2);
-  CHECK(sides[0].loads[0].first == doctest::Approx(1e-4));
-  CHECK(sides[0].loads[1].first == doctest::Approx(2e-4));
-  CHECK(sides[1].loads[0].first == doctest::Approx(1e-4));
-  CHECK(sides[1].loads[1].first == doctest::Approx(4e-4));
+  CHECK(sides[0].loads[0].first == test::approx(1e-4));
+  CHECK(sides[0].loads[1].first == test::approx(2e-4));
+  CHECK(sides[1].loads[0].first == test::approx(1e-4));
+  CHECK(sides[1].loads[1].first == test::approx(4e-4));
   CHECK(sides[0].end_modes.size() == 1);
   CHECK(sides[1].end_modes.empty());
 }

@@ -6,6 +6,7 @@
 #include <rosin/simulate/burdened_signals.hpp>
 
 #include "plucked.hpp"
+#include "support/approx.hpp"
 
 #include <doctest/doctest.h>
 
@@ -48,11 +49,11 @@ TEST_CASE("sympathetic string: sought in what is left over, found under its end 
   const rosin::scene_fit fit =
       rosin::fit_scene(data, {catalogue[1]}, from, {{1000, 24, true}, {1000, 80, true}, {}}, declared->noise_N);
   const auto at = data.layout.size();
-  CHECK(std::exp(fit.value[at]) == doctest::Approx(pitch_Hz * std::sqrt(1 + inharmonicity)).epsilon(2e-4));
-  CHECK(std::exp(fit.value[at + 1]) == doctest::Approx(q).epsilon(0.03));
-  CHECK(fit.value[at + 2] == doctest::Approx(per_mass_per_s / 0.175).epsilon(0.03));
-  CHECK(fit.value[at + 3] == doctest::Approx(2).epsilon(0.01));
-  CHECK(fit.value[at + 4] == doctest::Approx(inharmonicity).epsilon(0.05));
+  CHECK(std::exp(fit.value[at]) == test::approx(pitch_Hz * std::sqrt(1 + inharmonicity)).epsilon(2e-4));
+  CHECK(std::exp(fit.value[at + 1]) == test::approx(q).epsilon(0.03));
+  CHECK(fit.value[at + 2] == test::approx(per_mass_per_s / 0.175).epsilon(0.03));
+  CHECK(fit.value[at + 3] == test::approx(2).epsilon(0.01));
+  CHECK(fit.value[at + 4] == test::approx(inharmonicity).epsilon(0.05));
   CHECK(fit.quality.residual_ratio[0] < 0.05 * plain.quality.residual_ratio[0]);
 }
 
@@ -62,8 +63,8 @@ TEST_CASE("sympathetic string: a comb is read off its peaks, stiff strings' and 
   for (const int n : {1, 2, 3, 5, 6, 7, 9}) found.peaks.push_back({n * 196.1 * std::sqrt(1 + 8e-5 * n * n), 1});
   const auto combs = rosin::detail::foreign_combs(found, own);
   REQUIRE_FALSE(combs.empty());
-  CHECK(combs[0].pitch_Hz == doctest::Approx(196.1).epsilon(1e-4));
-  CHECK(combs[0].inharmonicity == doctest::Approx(8e-5).epsilon(0.01));
+  CHECK(combs[0].pitch_Hz == test::approx(196.1).epsilon(1e-4));
+  CHECK(combs[0].inharmonicity == test::approx(8e-5).epsilon(0.01));
   CHECK_FALSE(rosin::detail::is_new(combs, 98.05));
 }
 

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 TEST_CASE("a tension that rose by one per cent between plucks and stroke is found in the stroke") {
   rosin::string_parameters string{
       .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 659.69, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 1000}};
@@ -23,10 +25,10 @@ TEST_CASE("a tension that rose by one per cent between plucks and stroke is foun
   REQUIRE(bowed);
   const auto found =
       rosin::find_tension_drift({{bowed->force_near_N, bowed->force_far_N, plucked}}, {20e3, 40e3}, bowed->sample_rate_Hz);
-  CHECK(found.relative == doctest::Approx(0.01).epsilon(0.002));
+  CHECK(found.relative == test::approx(0.01).epsilon(0.002));
   CHECK(found.delta_after < 0.2 * found.delta_before);
   CHECK(found.delta_after < 0.5 * found.delta_moved_contact);
   const auto moved = rosin::at_tension(plucked, 0.01);
-  CHECK(moved.at.delay_s[0] / plucked.at.delay_s[0] == doctest::Approx(1 / std::sqrt(1.01)));
-  CHECK(moved.at.impedance_Ns_m / plucked.at.impedance_Ns_m == doctest::Approx(std::sqrt(1.01)));
+  CHECK(moved.at.delay_s[0] / plucked.at.delay_s[0] == test::approx(1 / std::sqrt(1.01)));
+  CHECK(moved.at.impedance_Ns_m / plucked.at.impedance_Ns_m == test::approx(std::sqrt(1.01)));
 }

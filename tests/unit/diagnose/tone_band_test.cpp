@@ -6,6 +6,7 @@
 #include <random>
 
 #include "contact_rigs.hpp"
+#include "support/approx.hpp"
 
 namespace {
 
@@ -29,12 +30,12 @@ TEST_CASE("tone band: the pitch of a stroke is where its motion is most like its
   for (const double period : {101.3, 109.7, 130.2}) {
     const auto p = rosin::pitch_of(slips(period, 0, 83, 0.02), 100, 3900, 10e3, 100 / 10e3);
     CHECK(p.measured);
-    CHECK(p.pitch_Hz == doctest::Approx(10e3 / period).epsilon(0.002));
+    CHECK(p.pitch_Hz == test::approx(10e3 / period).epsilon(0.002));
   }
 }
 
 TEST_CASE("tone band: a stroke that does not repeat itself, or is too short or not known, has the pitch of the string at rest") {
-  const auto rest = [](const rosin::stroke_pitch& p) { return !p.measured && p.pitch_Hz == doctest::Approx(100); };
+  const auto rest = [](const rosin::stroke_pitch& p) { return !p.measured && p.pitch_Hz == test::approx(100); };
   CHECK(rest(rosin::pitch_of(slips(105, 0.9, 83, 0.02), 100, 3900, 10e3, 0.01)));
   CHECK(rest(rosin::pitch_of(slips(105, 0, 83, 1), 100, 3900, 10e3, 0.01)));
   CHECK(rest(rosin::pitch_of(slips(155, 0, 83, 0.02), 100, 3900, 10e3, 0.01)));

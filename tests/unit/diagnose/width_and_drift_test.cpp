@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "contact_rigs.hpp"
+#include "support/approx.hpp"
 
 namespace {
 
@@ -28,13 +29,13 @@ struct drifted_strokes {
 TEST_CASE("width and drift: a tension and back again is where it was") {
   const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 81);
   const auto there = rosin::at_tension(a.take(), 0.02), back = rosin::at_tension(there, 1 / 1.02 - 1);
-  CHECK(there.delay_s[0] == doctest::Approx(a.take().delay_s[0] / std::sqrt(1.02)));
-  CHECK(there.impedance_Ns_m == doctest::Approx(a.take().impedance_Ns_m * std::sqrt(1.02)));
-  CHECK(there.stiffness_s2 == doctest::Approx(a.take().stiffness_s2 / 1.02 / 1.02));
-  CHECK(back.delay_s[1] == doctest::Approx(a.take().delay_s[1]));
+  CHECK(there.delay_s[0] == test::approx(a.take().delay_s[0] / std::sqrt(1.02)));
+  CHECK(there.impedance_Ns_m == test::approx(a.take().impedance_Ns_m * std::sqrt(1.02)));
+  CHECK(there.stiffness_s2 == test::approx(a.take().stiffness_s2 / 1.02 / 1.02));
+  CHECK(back.delay_s[1] == test::approx(a.take().delay_s[1]));
   const rosin::torsion_values torsion{7, 3.5, 15};
   const double z = there.impedance_Ns_m * rosin::at_tension(torsion, 0.02).impedance_ratio;
-  CHECK(z == doctest::Approx(a.take().impedance_Ns_m * 3.5));  // in Ns m it stays
+  CHECK(z == test::approx(a.take().impedance_Ns_m * 3.5));  // in Ns m it stays
 }
 
 TEST_CASE("width and drift: both are found at once" * doctest::test_suite("long")) {
@@ -46,7 +47,7 @@ TEST_CASE("width and drift: both are found at once" * doctest::test_suite("long"
     CHECK(found->sd < 5e-4);
     CHECK(found->gain > 1000);
     const double c = 2 * contact_rigs::e_string.length_m * contact_rigs::e_string.fundamental_Hz;
-    CHECK(2 * found->half_delay_s * c == doctest::Approx(drifted_strokes::width_m).epsilon(0.15));
+    CHECK(2 * found->half_delay_s * c == test::approx(drifted_strokes::width_m).epsilon(0.15));
   }
 }
 

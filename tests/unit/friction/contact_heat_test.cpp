@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -28,7 +30,7 @@ TEST_CASE("a half space under constant flux warms as the square root of time") {
     const double rise = heat(flux * area, 0, normal, h), t = i * h;
     if (i == 50 || i == 500 || i == 5000 || i == 20000) {
       CAPTURE(t);
-      CHECK(rise == doctest::Approx(2 * flux * std::sqrt(D * t / pi) / p.rod.conductivity_W_mK).epsilon(i == 50 ? 0.02 : 0.006));
+      CHECK(rise == test::approx(2 * flux * std::sqrt(D * t / pi) / p.rod.conductivity_W_mK).epsilon(i == 50 ? 0.02 : 0.006));
     }
   }
 }
@@ -43,7 +45,7 @@ TEST_CASE("after a pulse of heat it cools as one over the square root of time") 
   for (int i = 1; i <= 3000; ++i) {
     const double rise = heat(0, 0, normal, h), t = (i + 0.5) * h;
     if (i == 100 || i == 1000 || i == 3000)
-      CHECK(rise == doctest::Approx(energy / p.rod.conductivity_W_mK * std::sqrt(D / (pi * t))).epsilon(0.02));
+      CHECK(rise == test::approx(energy / p.rod.conductivity_W_mK * std::sqrt(D / (pi * t))).epsilon(0.02));
   }
 }
 
@@ -55,7 +57,7 @@ TEST_CASE("steady sliding on a fresh rod: K Theta sqrt(r / D) per area") {
   for (const double v : {0.01, 0.1, 0.5, 1.0, 2.0}) {
     CAPTURE(v);
     const double exact = area * p.rod.conductivity_W_mK * std::sqrt(3 * v / (8 * radius * D));
-    CHECK(heat.steady_loss_W_K(v, normal) == doctest::Approx(exact).epsilon(0.01));
+    CHECK(heat.steady_loss_W_K(v, normal) == test::approx(exact).epsilon(0.01));
   }
 }
 
@@ -65,7 +67,7 @@ TEST_CASE("the steps settle to what the steady loss says, layer, rod and string 
     rosin::contact_heat<double> heat{p};
     double rise = 0, h = 1e-6;
     for (int i = 0; i < 4000; ++i, h = std::min(h * 1.02, 0.01)) rise = heat(0.05, v, 0.3, h);
-    CHECK(rise == doctest::Approx(0.05 / heat.steady_loss_W_K(v, 0.3)).epsilon(1e-3));
+    CHECK(rise == test::approx(0.05 / heat.steady_loss_W_K(v, 0.3)).epsilon(1e-3));
   }
 }
 
@@ -74,7 +76,7 @@ TEST_CASE("the layer's capacity rules the first microsecond") {
   p.rod = p.string = {};
   rosin::contact_heat<double> heat{p};
   const double rise = heat(0.1, 0, 0.3, 1e-6);
-  CHECK(rise == doctest::Approx(0.1 * 1e-6 / (0.3 * p.area_per_newton_m2 * p.layer_capacity_J_m2K())));
+  CHECK(rise == test::approx(0.1 * 1e-6 / (0.3 * p.area_per_newton_m2 * p.layer_capacity_J_m2K())));
 }
 
 TEST_CASE("reset forgets all heat") {

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 rosin::load_line<double> line_for(double sticking) { return {0.0, 2.0, 2.0 * sticking, 0.3, 1e-6}; }
@@ -21,7 +23,7 @@ TEST_CASE("in place of sticking it creeps, exponentially in the force") {
     CHECK(contact.converged);
     CHECK(!contact.slipping);
     const double expected = 5e-3 * std::exp((std::abs(contact.force_N) / 0.3 - 1.2) / 0.05);
-    CHECK(std::abs(line.slip(contact.force_N)) == doctest::Approx(std::min(expected, 2 * std::abs(sticking))).epsilon(1e-6));
+    CHECK(std::abs(line.slip(contact.force_N)) == test::approx(std::min(expected, 2 * std::abs(sticking))).epsilon(1e-6));
     CHECK(contact.force_N * line.slip(contact.force_N) <= 0);
   }
 }

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using law_type = rosin::elasto_plastic<rosin::stribeck_curve<>>;
@@ -21,7 +23,7 @@ TEST_CASE("steady sliding gives back the curve") {
     rosin::contact_force<double> contact;
     for (int i = 0; i < 30000; ++i) contact = law({0.0, 1e-7, v, 0.3, 1e-6});
     CAPTURE(v);
-    CHECK(contact.force_N == doctest::Approx(0.3 * steady(v).value).epsilon(1e-5));
+    CHECK(contact.force_N == test::approx(0.3 * steady(v).value).epsilon(1e-5));
     CHECK(contact.slipping);
   }
 }
@@ -36,7 +38,7 @@ TEST_CASE("below breakaway it is a spring: all motion comes back, none of it cou
     moved = next;
     CHECK(!contact.slipping);
     CHECK(std::abs(law.deflection_m()) <= 1.05 * amplitude);
-    if (i % 1000 == 250) CHECK(contact.force_N == doctest::Approx(s0 * amplitude).epsilon(0.01));
+    if (i % 1000 == 250) CHECK(contact.force_N == test::approx(s0 * amplitude).epsilon(0.01));
   }
   CHECK(std::abs(law.deflection_m()) < 0.02 * amplitude);
 }

@@ -8,6 +8,8 @@
 
 #include <rosin/friction/yield_curve_design.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 const rosin::power_law_curve<> steady;  // 0.2 (v + 0.011)^(-0.4)
@@ -26,7 +28,7 @@ TEST_CASE("steady sliding gives back the revised curve") {
     double force = 0, h = 2e-6;
     for (int i = 0; i < 4000; ++i, h = std::min(1.01 * h, 2e-3)) force = law({0.0, 1e-9, v, 0.3, h}).force_N;
     CAPTURE(v);
-    CHECK(force == doctest::Approx(0.3 * steady(v).value).epsilon(0.004));
+    CHECK(force == test::approx(0.3 * steady(v).value).epsilon(0.004));
   }
 }
 
@@ -35,7 +37,7 @@ TEST_CASE("at a given temperature, faster shear yields the published ratio at on
   const double slow = law({0.0, 1e-9, 0.05, 0.3, 1e-9}).force_N;
   law.reset();
   const double fast = law({0.0, 1e-9, 1.0, 0.3, 1e-9}).force_N;
-  CHECK(fast / slow == doctest::Approx(std::pow(1.35 / 0.40, -0.4)).epsilon(1e-6));
+  CHECK(fast / slow == test::approx(std::pow(1.35 / 0.40, -0.4)).epsilon(1e-6));
 }
 
 TEST_CASE("against the slip in both directions, no force without the rod, forgets on reset") {

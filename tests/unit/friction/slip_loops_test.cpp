@@ -10,6 +10,8 @@
 #include <rosin/friction/yield_curve_design.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double rate_Hz = 128e3, rod_m_s = 0.2;
@@ -60,23 +62,23 @@ TEST_CASE("slip loops: an ellipse has the area pi a b, counter-clockwise where t
       REQUIRE(loops.size() == 20);
       const double a = e.speed_m_s / 2, b = e.swing_N;
       for (const auto& s : loops) {
-        CHECK(s.area_W == doctest::Approx(early * std::numbers::pi * a * b).epsilon(0.01));
-        CHECK(s.fastest_m_s == doctest::Approx(e.speed_m_s));
+        CHECK(s.area_W == test::approx(early * std::numbers::pi * a * b).epsilon(0.01));
+        CHECK(s.fastest_m_s == test::approx(e.speed_m_s));
         // segment of a circle beyond half a radius, as an ellipse; its mean height over a width of a / 2
         const double segment = (std::numbers::pi / 3 - std::sqrt(3.0) / 4) * a * b;
-        CHECK(s.fast_area_W == doctest::Approx(early * segment).epsilon(0.02));
-        CHECK(s.split_N() == doctest::Approx(early * segment / (a / 2)).epsilon(0.02));
-        CHECK(s.range_N == doctest::Approx(2 * b));
-        CHECK(s.onset_N == doctest::Approx(e.mean_N + (early > 0 ? b : 0.0)).epsilon(0.01));
-        CHECK(s.recapture_N == doctest::Approx(e.mean_N).epsilon(0.05));
+        CHECK(s.fast_area_W == test::approx(early * segment).epsilon(0.02));
+        CHECK(s.split_N() == test::approx(early * segment / (a / 2)).epsilon(0.02));
+        CHECK(s.range_N == test::approx(2 * b));
+        CHECK(s.onset_N == test::approx(e.mean_N + (early > 0 ? b : 0.0)).epsilon(0.01));
+        CHECK(s.recapture_N == test::approx(e.mean_N).epsilon(0.05));
         // the swing of the force is odd about the middle of the slip: its mean does the work
-        CHECK(s.distance_m() == doctest::Approx(e.speed_m_s * 40 / rate_Hz / 2).epsilon(1e-6));
-        CHECK(s.dissipated_J == doctest::Approx(e.mean_N * s.distance_m()).epsilon(1e-6));
-        CHECK(s.duration_s() == doctest::Approx(40 / rate_Hz).epsilon(0.06));
+        CHECK(s.distance_m() == test::approx(e.speed_m_s * 40 / rate_Hz / 2).epsilon(1e-6));
+        CHECK(s.dissipated_J == test::approx(e.mean_N * s.distance_m()).epsilon(1e-6));
+        CHECK(s.duration_s() == test::approx(40 / rate_Hz).epsilon(0.06));
       }
       const auto verdict = rosin::judge_loops(loops, 30 / rate_Hz);
       CHECK(verdict.loops == 20);
-      CHECK(verdict.split_N == doctest::Approx(loops[7].split_N()));
+      CHECK(verdict.split_N == test::approx(loops[7].split_N()));
       CHECK(verdict.sense == (early > 0 ? rosin::loop_sense::counter_clockwise : rosin::loop_sense::clockwise));
       CHECK(rosin::judge_loops(loops, 50 / rate_Hz).loops == 0);
     }
@@ -98,11 +100,11 @@ TEST_CASE("slip loops: places on the rod, what stuck before, and a string that c
   const auto phases = rosin::find_phases(e.relative_m_s, rod_m_s);
   const auto loops = rosin::slip_loops(e.force_N, e.relative_m_s, phases, rod_m_s, rate_Hz);
   REQUIRE(loops.size() == 20);
-  CHECK(track.back() == doctest::Approx(20 * 1.5 * 40 / rate_Hz / 2 + 0.004 * 3999 / rate_Hz).epsilon(1e-9));
+  CHECK(track.back() == test::approx(20 * 1.5 * 40 / rate_Hz / 2 + 0.004 * 3999 / rate_Hz).epsilon(1e-9));
   for (std::size_t k = 1; k < loops.size(); ++k) {
-    CHECK(loops[k].from_m == doctest::Approx(loops[k - 1].to_m + loops[k].crept_m).epsilon(1e-9));
-    CHECK(loops[k].crept_m == doctest::Approx(0.004 * loops[k].stuck_s).epsilon(0.02));
-    CHECK(loops[k].stuck_s + loops[k].duration_s() == doctest::Approx(200 / rate_Hz));
+    CHECK(loops[k].from_m == test::approx(loops[k - 1].to_m + loops[k].crept_m).epsilon(1e-9));
+    CHECK(loops[k].crept_m == test::approx(0.004 * loops[k].stuck_s).epsilon(0.02));
+    CHECK(loops[k].stuck_s + loops[k].duration_s() == test::approx(200 / rate_Hz));
   }
 }
 

@@ -8,6 +8,8 @@
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 const rosin::modal_rig rig{.string = {.length_m = 0.314,
@@ -36,14 +38,14 @@ TEST_CASE("slip phases: intervals made by hand are found, to the sample, under r
   const auto p = rosin::find_phases(v, 0.2);
   CHECK(p.slips.size() == 20);
   CHECK(p.sticks.size() == 20);
-  CHECK(p.sticking() == doctest::Approx(0.8));
-  CHECK(p.level_m_s == doctest::Approx(0.004).epsilon(1.0));
+  CHECK(p.sticking() == test::approx(0.8));
+  CHECK(p.level_m_s == test::approx(0.004).epsilon(1.0));
   for (const auto& s : p.slips)
     for (std::size_t i = s.begin; i < s.end; ++i) CHECK(slips[i] == 1);
   for (double& x : v) x = -x;  // a stroke the other way
   const auto back = rosin::find_phases(v, -0.2);
   CHECK(back.slips.size() == 20);
-  CHECK(back.level_m_s == doctest::Approx(-p.level_m_s));
+  CHECK(back.level_m_s == test::approx(-p.level_m_s));
 }
 
 TEST_CASE("slip phases: unknown samples belong to nothing; nothing known is nothing found") {
@@ -85,5 +87,5 @@ TEST_CASE("slip phases: a simulated stroke, with torsion and without knowing of 
   // without torsion the threshold widens with the ripple, and about the same share sticks
   const auto centre = rosin::find_phases(relative(*take, 0), 0.2);
   CHECK(centre.fluctuation_m_s > 3 * whole.fluctuation_m_s);
-  CHECK(centre.sticking() == doctest::Approx(whole.sticking()).epsilon(0.35));
+  CHECK(centre.sticking() == test::approx(whole.sticking()).epsilon(0.35));
 }

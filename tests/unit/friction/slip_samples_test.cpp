@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 TEST_CASE("slip samples: speed and coefficient of friction inside the slips, in either direction of the stroke") {
   std::vector<double> force(400, 0.1), relative(400, 0.0);
   for (std::size_t i = 100; i < 140; ++i) force[i] = 0.15, relative[i] = -0.6;
@@ -14,8 +16,8 @@ TEST_CASE("slip samples: speed and coefficient of friction inside the slips, in 
     REQUIRE(s.sample.size() == 34);
     CHECK(s.sample.front() == 103);
     CHECK(s.sample.back() == 136);
-    CHECK(s.speed_m_s[5] == doctest::Approx(0.6));
-    CHECK(s.friction[5] == doctest::Approx(0.5));
+    CHECK(s.speed_m_s[5] == test::approx(0.6));
+    CHECK(s.friction[5] == test::approx(0.5));
   }
 }
 
@@ -42,7 +44,7 @@ TEST_CASE("smooth functions: a partition of one that follows curves of friction"
   const Eigen::MatrixXd B = functions(at);
   CHECK(B.cols() == 11);
   for (Eigen::Index i = 0; i < B.rows(); ++i) {
-    CHECK(B.row(i).sum() == doctest::Approx(1));
+    CHECK(B.row(i).sum() == test::approx(1));
     CHECK(B.row(i).minCoeff() > -1e-12);
   }
   const Eigen::VectorXd mu = (0.45 * (-at.array() / 0.1).exp() + 0.35).matrix();
@@ -50,6 +52,6 @@ TEST_CASE("smooth functions: a partition of one that follows curves of friction"
   CHECK((fitted - mu).cwiseAbs().maxCoeff() < 0.01);
   // what lies outside is taken at the ends
   const Eigen::MatrixXd outside = functions(Eigen::Vector2d(-1, 99));
-  CHECK(outside(0, 0) == doctest::Approx(1));
-  CHECK(outside(1, 10) == doctest::Approx(1));
+  CHECK(outside(0, 0) == test::approx(1));
+  CHECK(outside(1, 10) == test::approx(1));
 }

@@ -8,6 +8,8 @@
 
 #include <rosin/friction/yield_curve_design.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 rosin::thermal_plastic<double> usual_law(double normal = 0.3) {
@@ -27,7 +29,7 @@ TEST_CASE("steady sliding gives back the curve it was made from") {
     double force = 0, h = 2e-6;
     for (int i = 0; i < 4000; ++i, h = std::min(1.01 * h, 2e-3)) force = law(held(v, h)).force_N;
     CAPTURE(v);
-    CHECK(force == doctest::Approx(0.3 * steady(v).value).epsilon(0.004));
+    CHECK(force == test::approx(0.3 * steady(v).value).epsilon(0.004));
   }
 }
 

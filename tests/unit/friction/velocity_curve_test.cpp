@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 /// All roots of u - D + w mu(u) on (0, D], by scanning for changes of sign.
@@ -47,7 +49,7 @@ TEST_CASE_TEMPLATE("Newton's method finds the largest root, and none where there
     CAPTURE(weight);
     CHECK(root.converged);
     CHECK(root.exists == !expected.empty());
-    if (root.exists && !expected.empty()) CHECK(root.speed == doctest::Approx(expected.back()).epsilon(2e-4));
+    if (root.exists && !expected.empty()) CHECK(root.speed == test::approx(expected.back()).epsilon(2e-4));
     ++(root.exists ? found : missing);
   }
   CHECK(found > 5);
@@ -84,8 +86,8 @@ TEST_CASE("a branch is kept until it is gone: release at mu(0) N, capture where 
     if (law(line_for(d)).slipping && released == 0) released = d;
   for (double d = 1.3 * release; d > 0; d -= 1e-4)
     if (!law(line_for(d)).slipping && captured == 0) captured = d;
-  CHECK(released == doctest::Approx(release).epsilon(1e-3));
-  CHECK(captured == doctest::Approx(capture).epsilon(3e-3));
+  CHECK(released == test::approx(release).epsilon(1e-3));
+  CHECK(captured == test::approx(capture).epsilon(3e-3));
 }
 
 TEST_CASE("on both branches and in both directions: on the line, on the curve, and against the slip") {
@@ -97,8 +99,8 @@ TEST_CASE("on both branches and in both directions: on the line, on the curve, a
     const auto contact = law(line);
     const double slip = line.slip(contact.force_N);
     CHECK(contact.force_N * slip <= 1e-15);
-    if (contact.slipping) CHECK(std::abs(contact.force_N) == doctest::Approx(0.3 * curve(std::abs(slip)).value).epsilon(1e-10));
-    else CHECK(slip == doctest::Approx(0.0));
+    if (contact.slipping) CHECK(std::abs(contact.force_N) == test::approx(0.3 * curve(std::abs(slip)).value).epsilon(1e-10));
+    else CHECK(slip == test::approx(0.0).scale(1));
     CHECK(std::abs(contact.force_N) <= 0.3 * curve(0).value + 1e-12);
     ++(contact.slipping ? slipped : stuck);
   }

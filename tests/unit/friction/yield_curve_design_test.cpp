@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 TEST_CASE("the table turns the steady temperature round") {
   // Woodhouse and Galluzzo's Eq. (5): N mu v = v a delta rho c Theta + Theta A K sqrt(3 v / (8 a D)), no string
   const rosin::two_exponential_curve<> steady;
@@ -17,10 +19,10 @@ TEST_CASE("the table turns the steady temperature round") {
     const double mu = steady(v).value;
     const double loss = v * a * p.layer_capacity_J_m2K() + A * p.rod.conductivity_W_mK * std::sqrt(3 * v / (8 * a * D));
     CAPTURE(v);
-    CHECK((*table)(N * mu * v / loss) == doctest::Approx(mu).epsilon(0.015));
+    CHECK((*table)(N * mu * v / loss) == test::approx(mu).epsilon(0.015));
   }
-  CHECK(table->value.front() == doctest::Approx(1.2));
-  CHECK(table->value.back() == doctest::Approx(0.35).epsilon(1e-4));
+  CHECK(table->value.front() == test::approx(1.2));
+  CHECK(table->value.back() == test::approx(0.35).epsilon(1e-4));
 }
 
 TEST_CASE("a shape that the law keeps explicit is divided out") {
@@ -30,8 +32,8 @@ TEST_CASE("a shape that the law keeps explicit is divided out") {
   const auto shaped = rosin::design_yield_curve(steady, shape, p, 0.3);
   REQUIRE(plain);
   REQUIRE(shaped);
-  CHECK(shaped->value.front() == doctest::Approx(plain->value.front() / shape(0).value));
-  CHECK(shaped->value.back() == doctest::Approx(plain->value.back() / shape(5).value));
+  CHECK(shaped->value.front() == test::approx(plain->value.front() / shape(0).value));
+  CHECK(shaped->value.back() == test::approx(plain->value.back() / shape(5).value));
 }
 
 TEST_CASE("what cannot be turned round is refused with the speed at which it fails") {

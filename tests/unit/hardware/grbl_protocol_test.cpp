@@ -3,16 +3,18 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 TEST_CASE("status reports of GRBL 1.1, as its manual shows them") {
   auto s = rosin::parse_grbl_status("<Run|MPos:-12.500,0.000,0.000|FS:12000,0>");
   REQUIRE(s);
   CHECK(s->state == rosin::motion_state::running);
-  CHECK(s->position_m == doctest::Approx(-0.0125));
-  CHECK(s->speed_m_s == doctest::Approx(0.2));
+  CHECK(s->position_m == test::approx(-0.0125));
+  CHECK(s->speed_m_s == test::approx(0.2));
   s = rosin::parse_grbl_status("<Hold:1|MPos:0.000,-10.000,5.000|Bf:15,128|F:600|WCO:0.000,0.000,0.000>");
   REQUIRE(s);
   CHECK(s->state == rosin::motion_state::holding);
-  CHECK(s->speed_m_s == doctest::Approx(0.01));
+  CHECK(s->speed_m_s == test::approx(0.01));
   CHECK(rosin::parse_grbl_status("<Alarm|MPos:1.000,0.000,0.000|FS:0,0>")->state == rosin::motion_state::alarm);
   CHECK(rosin::parse_grbl_status("<Idle|MPos:1.000,0.000,0.000>")->state == rosin::motion_state::idle);
   for (const char* none : {"ok", "", "<>", "<Idle>", "<Idle|WPos:1,2,3>", "<Odd|MPos:1,2,3>", "<Idle|MPos:x>"})

@@ -3,16 +3,18 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 TEST_CASE("a stroke is the trapezoid that was asked for") {
   rosin::grbl_simulator sled;
   CHECK(sled.receive("$120=1000\n", 0) == "ok\r\n");
   CHECK(sled.receive("G21G91G1X-100F12000\n", 0) == "ok\r\n");  // 0.2 m/s: 0.2 s and 20 mm up, 60 mm in 0.3 s, 0.2 s down
   CHECK(sled.advance(0.1).empty());
-  CHECK(sled.speed_m_s() == doctest::Approx(0.1).epsilon(0.01));
-  CHECK(sled.position_m() == doctest::Approx(-0.005).epsilon(0.01));
+  CHECK(sled.speed_m_s() == test::approx(0.1).epsilon(0.01));
+  CHECK(sled.position_m() == test::approx(-0.005).epsilon(0.01));
   CHECK(sled.advance(0.3).empty());
-  CHECK(sled.speed_m_s() == doctest::Approx(0.2));
-  CHECK(sled.position_m() == doctest::Approx(-0.04).epsilon(0.01));
+  CHECK(sled.speed_m_s() == test::approx(0.2));
+  CHECK(sled.position_m() == test::approx(-0.04).epsilon(0.01));
   CHECK(sled.receive("?", 0.3).starts_with("<Run|MPos:-40.0"));
   CHECK(sled.advance(0.68).empty());
   CHECK(sled.moving());
@@ -40,5 +42,5 @@ TEST_CASE("feed hold, going on, reset while moving, limits") {
   sled.switch_mm = -70;
   CHECK(sled.receive("G91G1X60F12000\n", 1.7) == "ok\r\n");
   CHECK(sled.advance(3).starts_with("ALARM:1"));
-  CHECK(sled.position_m() == doctest::Approx(-0.07).epsilon(0.01));
+  CHECK(sled.position_m() == test::approx(-0.07).epsilon(0.01));
 }

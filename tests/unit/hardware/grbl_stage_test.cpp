@@ -10,6 +10,8 @@
 #include <mutex>
 #include <thread>
 
+#include "support/approx.hpp"
+
 namespace {
 
 /// The simulated controller behind a pseudo-terminal, in its own thread.
@@ -60,9 +62,9 @@ TEST_CASE("a stroke: speed, acceleration and distance arrive as asked") {
     if (now->state == rosin::motion_state::idle) break;
     std::this_thread::sleep_for(std::chrono::milliseconds{5});
   }
-  CHECK(fastest == doctest::Approx(0.4).epsilon(0.01));
+  CHECK(fastest == test::approx(0.4).epsilon(0.01));
   CHECK(reason(stage->wait(2)).empty());
-  CHECK(stage->status()->position_m == doctest::Approx(-0.1));
+  CHECK(stage->status()->position_m == test::approx(-0.1));
   CHECK(stage->setting(120) == 4000);
   const std::scoped_lock lock{sled.mutex};
   CHECK(sled.simulator.settings.at(120) == 4000);
@@ -96,7 +98,7 @@ TEST_CASE("feed hold and going on; stopping for good keeps the position") {
   REQUIRE(reason(stage->resume()).empty());
   CHECK(stage->status()->state == rosin::motion_state::running);
   REQUIRE(reason(stage->wait(2)).empty());
-  CHECK(stage->status()->position_m == doctest::Approx(-0.2));
+  CHECK(stage->status()->position_m == test::approx(-0.2));
   REQUIRE(reason(stage->start({-0.2, 0.4, 8})).empty());
   std::this_thread::sleep_for(std::chrono::milliseconds{120});
   REQUIRE(reason(stage->stop()).empty());

@@ -9,6 +9,8 @@
 #include <ctime>
 #include <vector>
 
+#include "support/approx.hpp"
+
 TEST_CASE_TEMPLATE("Eigen's transform is the definition at any length", T, float, double) {
   for (const std::size_t n : laws::fft_lengths) {
     laws::real_transform_is_exact<T, rosin::eigen_fft<T>>(n);
@@ -36,5 +38,5 @@ TEST_CASE("a large prime does not take quadratic time") {
   const std::clock_t begin = std::clock();
   fft.forward(x.data(), bins.data());
   CHECK(std::clock() - begin < 3 * CLOCKS_PER_SEC);
-  CHECK(bins[0].real() == doctest::Approx(static_cast<double>(prime)));
+  CHECK(bins[0].real() == test::approx(static_cast<double>(prime)));
 }

@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "support/approx.hpp"
+
 namespace {
 
 std::vector<double> two_sines(std::size_t size, double rate) {
@@ -22,16 +24,16 @@ TEST_CASE("lines come with frequency and amplitude, strongest first, without sid
   const auto x = two_sines(9973, 8000);  // a prime length
   const auto lines = rosin::strongest_lines(x, 8000, 20, 3900, 10);
   REQUIRE(lines.size() == 2);
-  CHECK(lines[0].frequency_Hz == doctest::Approx(441.7).epsilon(2e-5));
-  CHECK(lines[0].amplitude == doctest::Approx(0.8).epsilon(5e-3));
-  CHECK(lines[1].frequency_Hz == doctest::Approx(1000.3).epsilon(2e-5));
-  CHECK(lines[1].amplitude == doctest::Approx(0.05).epsilon(5e-3));
+  CHECK(lines[0].frequency_Hz == test::approx(441.7).epsilon(2e-5));
+  CHECK(lines[0].amplitude == test::approx(0.8).epsilon(5e-3));
+  CHECK(lines[1].frequency_Hz == test::approx(1000.3).epsilon(2e-5));
+  CHECK(lines[1].amplitude == test::approx(0.05).epsilon(5e-3));
 }
 
 TEST_CASE("the amplitude at a frequency is that of the sinusoid there") {
   const auto windowed = rosin::detail::hann_windowed(two_sines(8000, 8000));
-  CHECK(rosin::detail::amplitude_at(windowed, 441.7, 8000) == doctest::Approx(0.8).epsilon(1e-4));
-  CHECK(rosin::detail::amplitude_at(windowed, 1000.3, 8000) == doctest::Approx(0.05).epsilon(1e-3));
+  CHECK(rosin::detail::amplitude_at(windowed, 441.7, 8000) == test::approx(0.8).epsilon(1e-4));
+  CHECK(rosin::detail::amplitude_at(windowed, 1000.3, 8000) == test::approx(0.05).epsilon(1e-3));
   CHECK(rosin::detail::amplitude_at(windowed, 700, 8000) < 1e-4);
 }
 

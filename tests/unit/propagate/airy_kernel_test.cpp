@@ -7,6 +7,8 @@
 #include <complex>
 #include <numbers>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double rate_Hz = 128e3;
@@ -57,9 +59,9 @@ TEST_CASE("oversampled and decimated, its kernel is the exact-phase kernel") {
     const rosin::fir airy = rosin::airy_kernel(exact.delay_s, exact.stiffness_s2, limits, rate_Hz);
     CHECK(rosin::pass_band_error(airy, exact, limits, rate_Hz) < 5e-4);
     const rosin::fir printed = rosin::airy_kernel(exact.delay_s, exact.stiffness_s2, limits, rate_Hz, rosin::airy_form::printed);
-    CHECK(printed.response(0, rate_Hz).real() == doctest::Approx(1).epsilon(1e-3));
+    CHECK(printed.response(0, rate_Hz).real() == test::approx(1).epsilon(1e-3));
     // |D| = c / c_g instead of 1: -0.69 dB at 20 kHz.
-    CHECK(std::abs(printed.response(20e3, rate_Hz)) == doctest::Approx(1 / 1.0828).epsilon(2e-3));
+    CHECK(std::abs(printed.response(20e3, rate_Hz)) == test::approx(1 / 1.0828).epsilon(2e-3));
   }
 }
 

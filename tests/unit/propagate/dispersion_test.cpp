@@ -9,6 +9,8 @@
 #include <complex>
 #include <numbers>
 
+#include "support/approx.hpp"
+
 namespace {
 
 // The paper's string: m w^2 = T k^2 + B k^4.
@@ -29,22 +31,22 @@ double wavenumber(double w) {
 TEST_CASE("the phase rate is the root of the dispersion relation, at any frequency") {
   for (const double f : {1.0, 660.0, 5e3, 20e3, 64e3, 1e6}) {
     const double w = 2 * std::numbers::pi * f, k = wavenumber(w);
-    CHECK(rosin::phase_rate(w, epsilon) == doctest::Approx(c * k).epsilon(1e-13));
-    CHECK(rosin::stiffness_ratio(w, epsilon) == doctest::Approx(B * k * k / T).epsilon(1e-12));
-    CHECK(rosin::near_field_ratio(w, epsilon) == doctest::Approx(k / std::sqrt(k * k + T / B)).epsilon(1e-12));
+    CHECK(rosin::phase_rate(w, epsilon) == test::approx(c * k).epsilon(1e-13));
+    CHECK(rosin::stiffness_ratio(w, epsilon) == test::approx(B * k * k / T).epsilon(1e-12));
+    CHECK(rosin::near_field_ratio(w, epsilon) == test::approx(k / std::sqrt(k * k + T / B)).epsilon(1e-12));
     CHECK(rosin::phase_rate(-w, epsilon) == -rosin::phase_rate(w, epsilon));
     const double h = 1e-4 * w;
     const double group_delay = (wavenumber(w + h) - wavenumber(w - h)) / (2 * h);  // 1 / c_g
-    CHECK(rosin::slowness_ratio(w, epsilon) == doctest::Approx(c * group_delay).epsilon(1e-7));
+    CHECK(rosin::slowness_ratio(w, epsilon) == test::approx(c * group_delay).epsilon(1e-7));
   }
 }
 
 TEST_CASE("values of the paper's string at 20 and 40 kHz") {
   const double at20 = 2 * std::numbers::pi * 20e3, at40 = 2 * at20;
-  CHECK(rosin::stiffness_ratio(at20, epsilon) == doctest::Approx(0.05646).epsilon(1e-3));
-  CHECK(1 / rosin::slowness_ratio(at40, epsilon) == doctest::Approx(1.2767).epsilon(1e-4));
-  CHECK(rosin::force_factor(at40, epsilon) == doctest::Approx(1.1660).epsilon(1e-4));
-  CHECK(rosin::wave_impedance_ratio(at20, epsilon) == doctest::Approx(std::sqrt(1.05646)).epsilon(1e-4));
+  CHECK(rosin::stiffness_ratio(at20, epsilon) == test::approx(0.05646).epsilon(1e-3));
+  CHECK(1 / rosin::slowness_ratio(at40, epsilon) == test::approx(1.2767).epsilon(1e-4));
+  CHECK(rosin::force_factor(at40, epsilon) == test::approx(1.1660).epsilon(1e-4));
+  CHECK(rosin::wave_impedance_ratio(at20, epsilon) == test::approx(std::sqrt(1.05646)).epsilon(1e-4));
 }
 
 TEST_CASE("an ideal string disperses nothing; float is as good as float can be; complex frequencies are analytic") {
@@ -52,7 +54,7 @@ TEST_CASE("an ideal string disperses nothing; float is as good as float can be; 
   CHECK(rosin::slowness_ratio(1e5, 0.0) == 1);
   CHECK(rosin::force_factor(1e5, 0.0) == 1);
   CHECK(static_cast<double>(rosin::phase_rate(1e5F, static_cast<float>(epsilon))) ==
-        doctest::Approx(rosin::phase_rate(1e5, epsilon)).epsilon(1e-6));
+        test::approx(rosin::phase_rate(1e5, epsilon)).epsilon(1e-6));
   const std::complex<double> w(1e5, 300), q = rosin::phase_rate(w, epsilon);
   CHECK(std::abs(q * q * (1.0 + epsilon * q * q) - w * w) < 1e-12 * std::abs(w * w));
 }

@@ -7,6 +7,8 @@
 #include <complex>
 #include <numbers>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double rate_Hz = 48e3;
@@ -28,7 +30,7 @@ TEST_CASE("taps are the inverse transform of what is wanted") {
     const double f = 0.5 * rate_Hz * (i + 0.5) / steps;
     tap += (wanted(f) * limits(f) * std::polar(1.0, 2 * std::numbers::pi * f * 5 / rate_Hz)).real() / steps;
   }
-  CHECK(k.taps[45] == doctest::Approx(tap).epsilon(1e-7));
+  CHECK(k.taps[45] == test::approx(tap).epsilon(1e-7));
 }
 
 TEST_CASE("the response of an FIR is its Fourier sum") {
@@ -58,5 +60,5 @@ TEST_CASE("a set of runs: each is as short as its own size allows") {
   CHECK(two[1].taps == alone.taps);
   CHECK(two[0].first == alone.first);
   REQUIRE(two[0].taps.size() == alone.taps.size());
-  CHECK(two[0].taps[9] == doctest::Approx(1e-3 * alone.taps[9]));
+  CHECK(two[0].taps[9] == test::approx(1e-3 * alone.taps[9]));
 }

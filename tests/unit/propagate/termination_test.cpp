@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 const rosin::modal_termination bridge{{{460, 35, 0.175 / 0.12}, {900, 30, 0.175 / 0.05}}};
@@ -12,7 +14,7 @@ const rosin::modal_termination bridge{{{460, 35, 0.175 / 0.12}, {900, 30, 0.175 
 TEST_CASE("at its resonance a mode gives way by Q / (M w), in phase with the force") {
   const rosin::modal_termination one{{{3000, 20, 0.175 / 5e-3}}};
   const std::complex<double> z = one.relative_admittance(3000);
-  CHECK(z.real() == doctest::Approx(0.175 * 20 / (5e-3 * 2 * std::numbers::pi * 3000)));
+  CHECK(z.real() == test::approx(0.175 * 20 / (5e-3 * 2 * std::numbers::pi * 3000)));
   CHECK(std::abs(z.imag()) < 1e-12);
   CHECK(one.relative_admittance(0) == 0.0);
 }
@@ -32,7 +34,7 @@ TEST_CASE("poles are the zeros of the denominator; the memory is that of the slo
     const std::complex<double> p = m.pole();
     CHECK(std::abs(p * p + p * w / q + w * w) < 1e-9 * w * w);
     CHECK(p.real() < 0);
-    CHECK(rosin::modal_termination{{m}}.memory_s() == doctest::Approx(std::log(1e3) / -p.real()));
+    CHECK(rosin::modal_termination{{m}}.memory_s() == test::approx(std::log(1e3) / -p.real()));
   }
 }
 
@@ -43,6 +45,6 @@ TEST_CASE("a damper beside a spring: in phase with the force above its corner, s
     CHECK(std::abs(mode(s) - 0.01 * s / (s + 2 * std::numbers::pi * 30)) < 0.01 * 0.012);
   }
   CHECK(mode.pole().imag() == 0);
-  CHECK(mode.pole().real() == doctest::Approx(-2 * std::numbers::pi * 30).epsilon(1e-4));
-  CHECK(mode.compliance_s() == doctest::Approx(0.01 / (2 * std::numbers::pi * 30)));
+  CHECK(mode.pole().real() == test::approx(-2 * std::numbers::pi * 30).epsilon(1e-4));
+  CHECK(mode.compliance_s() == test::approx(0.01 / (2 * std::numbers::pi * 30)));
 }

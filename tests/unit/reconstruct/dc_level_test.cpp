@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "support/approx.hpp"
+
 TEST_CASE("the loop's middle is put at 0.65 times the normal force, either way the bow moves") {
   for (const double way : {1.0, -1.0}) {
     std::vector<double> force, velocity;
@@ -17,8 +19,8 @@ TEST_CASE("the loop's middle is put at 0.65 times the normal force, either way t
     force[3] = std::numeric_limits<double>::quiet_NaN();
     const rosin::dc_estimate dc = rosin::estimate_dc_level(force, velocity, way * 0.2, 0.3);
     REQUIRE(dc.available);
-    CHECK(dc.level_N == doctest::Approx(way * 0.65 * 0.3));
-    CHECK(dc.sd_N == doctest::Approx(0.045));
+    CHECK(dc.level_N == test::approx(way * 0.65 * 0.3));
+    CHECK(dc.sd_N == test::approx(0.045));
   }
 }
 

@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+#include "support/approx.hpp"
+
 namespace {
 
 const rosin::string_parameters string{
@@ -64,9 +66,9 @@ TEST_CASE("a drift of tension and a moved rod are found, and the waveform mends"
   off.gain = {1.003, 0.998};
   const rosin::fine_tuning t = rosin::fine_tune(off, bowed().near, bowed().far, limits, bowed().truth.sample_rate_Hz);
   CHECK(t.sigmas > 20);
-  CHECK(t.tuned.at.delay_s[0] == doctest::Approx(exact().at.delay_s[0]).epsilon(2e-4));
-  CHECK(t.tuned.at.delay_s[1] == doctest::Approx(exact().at.delay_s[1]).epsilon(2e-4));
-  CHECK(t.tuned.gain[0] / t.tuned.gain[1] == doctest::Approx(1).epsilon(1e-3));
+  CHECK(t.tuned.at.delay_s[0] == test::approx(exact().at.delay_s[0]).epsilon(2e-4));
+  CHECK(t.tuned.at.delay_s[1] == test::approx(exact().at.delay_s[1]).epsilon(2e-4));
+  CHECK(t.tuned.gain[0] / t.tuned.gain[1] == test::approx(1).epsilon(1e-3));
   CHECK(t.delta_after < 0.1 * t.delta_before);
 }
 
@@ -84,8 +86,8 @@ TEST_CASE("stated standard deviations are what the error is") {
     stated_f += std::pow(sure.force_sd_N[i], 2);
     stated_v += std::pow(sure.velocity_sd_m_s[i], 2);
   }
-  CHECK(std::sqrt(stated_f / force) == doctest::Approx(1).epsilon(0.1));
-  CHECK(std::sqrt(stated_v / velocity) == doctest::Approx(1).epsilon(0.1));
+  CHECK(std::sqrt(stated_f / force) == test::approx(1).epsilon(0.1));
+  CHECK(std::sqrt(stated_v / velocity) == test::approx(1).epsilon(0.1));
 }
 
 TEST_CASE("what the versions disagree in beyond noise widens the error bars") {

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double rate_Hz = 48e3;
@@ -35,11 +37,11 @@ TEST_CASE("the steady stretch of a take is found, and its period") {
   REQUIRE_MESSAGE(part, part.error());
   CHECK(part->begin >= 3990);
   CHECK(part->end <= 6200);
-  CHECK(part->period == doctest::Approx(rate_Hz / 311.7).epsilon(1e-5));
+  CHECK(part->period == test::approx(rate_Hz / 311.7).epsilon(1e-5));
   CHECK(part->remainder < 0.01);
-  CHECK(part->periods() == doctest::Approx(7).epsilon(0.01));
-  CHECK(std::abs(part->series[0][1]) == doctest::Approx(1).epsilon(1e-3));
-  CHECK(std::abs(part->series[1][4]) == doctest::Approx(0.125).epsilon(5e-3));
+  CHECK(part->periods() == test::approx(7).epsilon(0.01));
+  CHECK(std::abs(part->series[0][1]) == test::approx(1).epsilon(1e-3));
+  CHECK(std::abs(part->series[1][4]) == test::approx(0.125).epsilon(5e-3));
 }
 
 TEST_CASE("what does not repeat, is too short, silent or not a number is said") {

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double rate_Hz = 128e3, played_Hz = 648.37;  // a period of 197.418 samples: nothing integral about it
@@ -71,7 +73,7 @@ TEST_CASE("a periodic force comes back through rigid ends, as in the time domain
   const rosin::band limits{30e3, 52e3};
   const auto motion = rosin::reconstruct_periodic(at, x[0], x[1], limits, rate_Hz);
   REQUIRE_MESSAGE(motion, motion.error());
-  CHECK(motion->source.period == doctest::Approx(rate_Hz / played_Hz).epsilon(5e-7));
+  CHECK(motion->source.period == test::approx(rate_Hz / played_Hz).epsilon(5e-7));
   CHECK(motion->source.remainder < 1e-4);
   CHECK(motion->samples_per_period == 198);
   CHECK(motion->regularised.empty());

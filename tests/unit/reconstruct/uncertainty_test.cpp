@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/approx.hpp"
+
 TEST_CASE("white noise comes out of the kernels as large as stated") {
   constexpr double rate_Hz = 128e3;
   const rosin::band limits{20e3, 45e3};
@@ -29,11 +31,11 @@ TEST_CASE("white noise comes out of the kernels as large as stated") {
     velocity += motion.velocity_m_s(i) * motion.velocity_m_s(i);
   }
   const double count = static_cast<double>(motion.known.end - motion.known.begin);
-  CHECK(std::sqrt(force / count) == doctest::Approx(sure.force_noise_N).epsilon(0.03));
-  CHECK(std::sqrt(velocity / count) == doctest::Approx(sure.velocity_noise_m_s).epsilon(0.03));
+  CHECK(std::sqrt(force / count) == test::approx(sure.force_noise_N).epsilon(0.03));
+  CHECK(std::sqrt(velocity / count) == test::approx(sure.velocity_noise_m_s).epsilon(0.03));
   CHECK(sure.force_model_N < 0.3 * sure.force_noise_N);
   CHECK(sure.force_scale == 0.01);
-  CHECK(sure.velocity_scale == doctest::Approx(std::hypot(0.01, 0.02)));
+  CHECK(sure.velocity_scale == test::approx(std::hypot(0.01, 0.02)));
   CHECK(sure.force_sd_N.size() == near.size());
 }
 
@@ -53,7 +55,7 @@ TEST_CASE("what the convention of damping leaves open is counted, although both 
   rosin::reconstruction_sensitivity s;
   for (auto* part : {&s.force, &s.velocity, &s.difference}) part->setZero(n, rosin::waveform_parameters);
   const auto sure = rosin::uncertainty(c, motion, s, {0, 0}, {20e3, 45e3}, 128e3);
-  CHECK(sure.force_model_N == doctest::Approx(0.2 / std::numbers::sqrt2 / (2 * 500)).epsilon(1e-6));
-  CHECK(sure.velocity_model_m_s == doctest::Approx(0.4 / std::numbers::sqrt2 / (2 * 500)).epsilon(1e-6));
-  CHECK(sure.force_sd_N[n / 2] == doctest::Approx(sure.force_model_N));
+  CHECK(sure.force_model_N == test::approx(0.2 / std::numbers::sqrt2 / (2 * 500)).epsilon(1e-6));
+  CHECK(sure.velocity_model_m_s == test::approx(0.4 / std::numbers::sqrt2 / (2 * 500)).epsilon(1e-6));
+  CHECK(sure.force_sd_N[n / 2] == test::approx(sure.force_model_N));
 }

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double step_s = 1 / 2048e3, pi = 3.14159265358979323846;
@@ -41,10 +43,10 @@ TEST_CASE("skew delays the far channel, crosstalk mixes, the quadratic share ben
   CHECK(std::abs(amplitude(x[1], f) / amplitude(x[0], f) - std::polar(1.0, -2 * pi * f * skew)) < 1e-5);
   x = {tone(f), std::vector<double>(40000, 0.0)};
   rosin::disturb(x, {.crosstalk = 0.02}, step_s);
-  CHECK(std::abs(amplitude(x[1], f)) == doctest::Approx(0.02));
+  CHECK(std::abs(amplitude(x[1], f)) == test::approx(0.02));
   x = {tone(f), tone(f)};
   rosin::disturb(x, {.quadratic_per_N = {0, 0.1}}, step_s);
-  CHECK(std::abs(amplitude(x[1], 2 * f)) == doctest::Approx(0.05));
+  CHECK(std::abs(amplitude(x[1], 2 * f)) == test::approx(0.05));
   CHECK(std::abs(amplitude(x[0], 2 * f)) < 1e-9);
 }
 
@@ -72,6 +74,6 @@ TEST_CASE("a sensor that rings at twice a tone passes on what it bends before th
     return std::abs(amplitude(force[0], 2 * f));
   };
   const double own = 4.0 / 3;  // of the tone, an octave below the resonance
-  CHECK(octave(false) == doctest::Approx(q * curve / 2).epsilon(0.02));
-  CHECK(octave(true) == doctest::Approx(own * own * curve / 2).epsilon(0.02));
+  CHECK(octave(false) == test::approx(q * curve / 2).epsilon(0.02));
+  CHECK(octave(true) == test::approx(own * own * curve / 2).epsilon(0.02));
 }

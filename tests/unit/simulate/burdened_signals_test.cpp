@@ -5,6 +5,7 @@
 #include <rosin/friction/velocity_curve.hpp>
 
 #include "support/apart.hpp"
+#include "support/approx.hpp"
 #include "support/moving_end_rig.hpp"
 
 #include <doctest/doctest.h>
@@ -94,7 +95,7 @@ TEST_CASE("a second plane takes its share of a pluck and none of what the wire h
   sharper.string.fundamental_Hz *= 1.004, sharper.string.tension_N *= 1.004 * 1.004;
   const auto other = rosin::simulate_pluck(sharper, rosin::rig_burden{}, pluck, settings);
   REQUIRE((both && one && other));
-  CHECK(both->force_near_N[0] == doctest::Approx(0.7).epsilon(1e-3));
+  CHECK(both->force_near_N[0] == test::approx(0.7).epsilon(1e-3));
   std::vector<double> sum;
   for (std::size_t n = 0; n < one->size(); ++n) sum.push_back((one->force_near_N[n] + 0.1 * other->force_near_N[n]) / 1.1);
   CHECK(test::apart(both->force_near_N, sum) < 1e-9);

@@ -6,6 +6,7 @@
 #include <rosin/simulate/modal_pluck.hpp>
 
 #include "support/apart.hpp"
+#include "support/approx.hpp"
 
 #include <doctest/doctest.h>
 
@@ -57,7 +58,7 @@ TEST_CASE("a transducer that feels the tension reads the string's strain besides
              felt = rosin::step_pluck(rig, {.sensed_stiffness_N = {0, -2000}}, pluck, 0.006, 60e3, step_s);
   CHECK(felt.end_N[0] == plain.end_N[0]);
   const double held = std::pow(1 / rig.string.tension_N, 2) * 0.3 * 0.7 / 2;
-  CHECK(felt.end_N[1][100] - plain.end_N[1][100] == doctest::Approx(-2000 * held).epsilon(0.02));
+  CHECK(felt.end_N[1][100] - plain.end_N[1][100] == test::approx(-2000 * held).epsilon(0.02));
   double most = -1e9, least = 1e9;  // it sways twice a period, never below nothing
   for (std::size_t n = 4000; n < felt.end_N[1].size(); ++n) {
     const double strain = (felt.end_N[1][n] - plain.end_N[1][n]) / -2000;

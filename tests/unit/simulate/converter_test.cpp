@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -21,7 +23,7 @@ TEST_CASE("codes are rounded to the nearest and end where the range ends") {
   CHECK(channel.codes == std::vector<std::int32_t>{0, 1, 1, 2, -2, 127, 127, -128, -128});
   CHECK(channel.clipped == 2);
   CHECK(channel.share(7) == -1.0);
-  CHECK(channel.newtons()[1] == doctest::Approx(1.0 / 64));
+  CHECK(channel.newtons()[1] == test::approx(1.0 / 64));
 }
 
 TEST_CASE("16 and 24 bits: error of at most half a step, gain included, any full scale") {
@@ -51,9 +53,9 @@ TEST_CASE("noise: white, of the size asked for, and the same for the same seed")
   }
   const double size = static_cast<double>(x.size() - 1);
   CHECK(std::abs(mean / size) < 4e-3 / std::sqrt(size));
-  CHECK(square / size == doctest::Approx(1e-6).epsilon(4 * std::sqrt(2 / size)));
+  CHECK(square / size == test::approx(1e-6).epsilon(4 * std::sqrt(2 / size)));
   CHECK(std::abs(neighbour / square) < 4 / std::sqrt(size));
-  CHECK(fourth * size / (square * square) == doctest::Approx(3.0).epsilon(0.03));  // a normal distribution's
+  CHECK(fourth * size / (square * square) == test::approx(3.0).epsilon(0.03));  // a normal distribution's
 }
 
 TEST_CASE("AC coupling: a step decays with the time constant, a steady force has long gone") {
@@ -64,7 +66,7 @@ TEST_CASE("AC coupling: a step decays with the time constant, a steady force has
   const auto x = rosin::convert(force, 128e3, with, 1).newtons();
   CHECK(std::abs(x[999]) < 1e-9);
   for (const std::size_t n : {1100U, 2000U, 3999U})  // the step is a ramp over one sample: its centre lies half a sample earlier
-    CHECK(x[n] == doctest::Approx(-0.75 * std::exp(-2 * pi * corner * (static_cast<double>(n) - 999.5) / 128e3)).epsilon(1e-6));
+    CHECK(x[n] == test::approx(-0.75 * std::exp(-2 * pi * corner * (static_cast<double>(n) - 999.5) / 128e3)).epsilon(1e-6));
 }
 
 TEST_CASE("AC coupling: gain and phase of a tone are the analogue filter's") {
@@ -99,7 +101,7 @@ TEST_CASE("normal deviates by Box and Muller from the standard's twister: the sa
   rosin::gaussian_source source{42};
   for (int i = 0; i < 5; ++i) {
     const double u = uniform(), v = uniform();
-    CHECK(source() == doctest::Approx(std::sqrt(-2 * std::log(u)) * std::cos(2 * pi * v)));
+    CHECK(source() == test::approx(std::sqrt(-2 * std::log(u)) * std::cos(2 * pi * v)));
   }
   const double between = source.uniform(3, 4);
   CHECK(between > 3);

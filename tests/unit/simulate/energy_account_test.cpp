@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -53,9 +55,9 @@ TEST_CASE("work received, stored and lost are those of the equation of motion, a
     account.follow(all.first(71), travels ? way.first(71) : way.first(1));  // in two parts
     account.follow(all.subspan(71), travels ? way.subspan(71) : way.first(1));
     const auto found = account.total();
-    CHECK(found.received_J == doctest::Approx(wanted.received_J).epsilon(1e-7));
-    CHECK(found.stored_J == doctest::Approx(wanted.stored_J).epsilon(1e-7));
-    CHECK(found.lost_J == doctest::Approx(wanted.lost_J).epsilon(1e-7));
+    CHECK(found.received_J == test::approx(wanted.received_J).epsilon(1e-7));
+    CHECK(found.stored_J == test::approx(wanted.stored_J).epsilon(1e-7));
+    CHECK(found.lost_J == test::approx(wanted.lost_J).epsilon(1e-7));
     CHECK(std::abs(found.received_J - found.stored_J - found.lost_J) < 1e-13 * found.received_J);
   }
 }
@@ -67,7 +69,7 @@ TEST_CASE("a force that lasts gives the string the energy of its deflection") {
   account.follow(std::vector<double>(4000, 0.7), std::array{0.3});
   const auto found = account.total();
   double compliance = rosin::static_compliance_m_N(string, 0.3) - rosin::residual_compliance_m_N(string, 0.3, 50e3);
-  CHECK(found.stored_J == doctest::Approx(0.7 * 0.7 * compliance / 2).epsilon(1e-9));
+  CHECK(found.stored_J == test::approx(0.7 * 0.7 * compliance / 2).epsilon(1e-9));
   CHECK(found.lost_J > 0.3 * found.stored_J);
 }
 
@@ -79,5 +81,5 @@ TEST_CASE("more modes than fit into a lane keep their shapes") {
   double wanted = 0;
   for (const auto& m : many)
     wanted += std::pow(std::sin(pi * m.number * 0.237) * std::abs(rosin::respond_over_step(m, 1e-6).end), 2) * m.mass_kg / 2;
-  CHECK(account.total().stored_J == doctest::Approx(wanted).epsilon(1e-6));
+  CHECK(account.total().stored_J == test::approx(wanted).epsilon(1e-6));
 }

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using complex = std::complex<double>;
@@ -59,7 +61,7 @@ TEST_CASE("steps are exact for a force that runs straight between them") {
         near += mode.end_stiffness_N_m * stress;
         far += mode.end_stiffness_N_m * stress * mode.parity();
       }
-      CHECK(bank.free().velocity[0] + bank.mobility(0, 0) * force == doctest::Approx(velocity).epsilon(1e-7));
+      CHECK(bank.free().velocity[0] + bank.mobility(0, 0) * force == test::approx(velocity).epsilon(1e-7));
       CHECK(std::abs(bank.free().near + bank.near_gain(0) * force - near) < 1e-7);
       CHECK(std::abs(bank.free().far + bank.far_gain(0) * force - far) < 1e-7);
       bank.advance({force});
@@ -82,7 +84,7 @@ TEST_CASE("work done on a lossless string is the energy found in it") {
     last_force = force, last_velocity = velocity;
   }
   CHECK(work > 1e-6);
-  CHECK(bank.energy_J() == doctest::Approx(work).epsilon(2e-3));
+  CHECK(bank.energy_J() == test::approx(work).epsilon(2e-3));
 }
 
 TEST_CASE("no sequence of forces gets energy out of it") {
@@ -110,7 +112,7 @@ TEST_CASE("two ports: superposition and reciprocity, in the step and after it") 
       .length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660, .bending_stiffness_Nm2 = 4.7e-5, .loss = {.quality = 500}};
   const auto modes = rosin::transverse_modes(string, 100e3);
   bank first{modes, rosin::damping_convention::viscous, {0.2, 0.6}, 1e-6}, second = first, both = first;
-  CHECK(first.mobility(0, 1) == doctest::Approx(first.mobility(1, 0)));
+  CHECK(first.mobility(0, 1) == test::approx(first.mobility(1, 0)));
   for (int i = 0; i < 700; ++i) {
     const double a = i < 50 ? 1.0 : 0.0, b = i < 50 ? -0.7 : 0.0;
     first.advance({a, 0});
@@ -126,11 +128,11 @@ TEST_CASE("under a lasting force it comes to rest with the static shares it stat
   for (auto& m : modes) m.inverse_quality = 0.5;
   rosin::modal_bank<1> bank{modes, rosin::damping_convention::viscous, {0.3}, 1e-5};
   for (int i = 0; i < 4000; ++i) bank.advance({2.0});
-  CHECK(bank.free().near + bank.near_gain(0) * 2 == doctest::Approx(2 * bank.near_share(0)));
-  CHECK(bank.free().far + bank.far_gain(0) * 2 == doctest::Approx(2 * bank.far_share(0)));
+  CHECK(bank.free().near + bank.near_gain(0) * 2 == test::approx(2 * bank.near_share(0)));
+  CHECK(bank.free().far + bank.far_gain(0) * 2 == test::approx(2 * bank.far_share(0)));
   double share = 0;
   for (const auto& m : modes) share += m.shape(0.3) * m.end_stiffness_N_m / (m.mass_kg * m.omega_rad_s * m.omega_rad_s);
-  CHECK(bank.near_share(0) == doctest::Approx(share));
+  CHECK(bank.near_share(0) == test::approx(share));
 }
 
 TEST_CASE(
@@ -144,15 +146,15 @@ TEST_CASE(
   for (int i = 0; i < 50; ++i) both.advance({std::sin(0.4 * i), 0}), moved.advance({std::sin(0.4 * i), 0});
   moved.move_to({0.2, 0.617});
   for (std::size_t j = 0; j < 2; ++j) {
-    CHECK(moved.free().velocity[j] == doctest::Approx(both.free().velocity[j]).epsilon(1e-10));
-    CHECK(moved.mobility(0, j) == doctest::Approx(both.mobility(0, j)).epsilon(1e-10));
-    CHECK(moved.near_gain(j) == doctest::Approx(both.near_gain(j)).epsilon(1e-10));
-    CHECK(moved.far_gain(j) == doctest::Approx(both.far_gain(j)).epsilon(1e-10));
-    CHECK(moved.compliance(j) == doctest::Approx(both.compliance(j)).epsilon(1e-10));
-    CHECK(moved.near_share(j) == doctest::Approx(both.near_share(j)).epsilon(1e-10));
-    CHECK(moved.far_share(j) == doctest::Approx(both.far_share(j)).epsilon(1e-10));
+    CHECK(moved.free().velocity[j] == test::approx(both.free().velocity[j]).epsilon(1e-10));
+    CHECK(moved.mobility(0, j) == test::approx(both.mobility(0, j)).epsilon(1e-10));
+    CHECK(moved.near_gain(j) == test::approx(both.near_gain(j)).epsilon(1e-10));
+    CHECK(moved.far_gain(j) == test::approx(both.far_gain(j)).epsilon(1e-10));
+    CHECK(moved.compliance(j) == test::approx(both.compliance(j)).epsilon(1e-10));
+    CHECK(moved.near_share(j) == test::approx(both.near_share(j)).epsilon(1e-10));
+    CHECK(moved.far_share(j) == test::approx(both.far_share(j)).epsilon(1e-10));
   }
   both.advance({0.1, -0.7}), moved.advance({0.1, -0.7});
-  CHECK(moved.free().velocity[1] == doctest::Approx(both.free().velocity[1]).epsilon(1e-10));
-  CHECK(moved.free().far == doctest::Approx(both.free().far).epsilon(1e-10));
+  CHECK(moved.free().velocity[1] == test::approx(both.free().velocity[1]).epsilon(1e-10));
+  CHECK(moved.free().far == test::approx(both.free().far).epsilon(1e-10));
 }

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -54,5 +56,5 @@ TEST_CASE("the line's integral is kept") {
   steps[decimate.reach() + 1001] = 3;
   double sum = 0;
   for (const double s : decimate.lines(steps)) sum += s / 128e3;
-  CHECK(sum == doctest::Approx(3 * step).epsilon(1e-4));
+  CHECK(sum == test::approx(3 * step).epsilon(1e-4));
 }

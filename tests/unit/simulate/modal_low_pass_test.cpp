@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -26,12 +28,12 @@ TEST_CASE("flat where it passes, nothing where it stops, unit gain at rest") {
   CHECK(std::abs(gain(h, 0) - 1) < 2e-8);
   for (double f = 1e3; f <= 55e3; f += 3e3) CHECK(std::abs(gain(h, f) - 1) < 1.1e-5);
   for (double f = 64e3; f <= 200e3; f += 7.3e3) CHECK(std::abs(gain(h, f)) < 1.1e-5);
-  CHECK(gain(h, 59.5e3) == doctest::Approx(0.5).epsilon(0.01));
+  CHECK(gain(h, 59.5e3) == test::approx(0.5).epsilon(0.01));
 }
 
 TEST_CASE("symmetric and of finite length: no delay") {
   const rosin::modal_low_pass h{20e3, 30e3, 1e-3};
-  CHECK(h(0.3e-4) == doctest::Approx(h(-0.3e-4)));
+  CHECK(h(0.3e-4) == test::approx(h(-0.3e-4)));
   CHECK(h(1.001 * h.half_width_s()) == 0.0);
   CHECK(h(0) > h(1e-5));
 }
@@ -56,6 +58,6 @@ TEST_CASE("the Gauss rule is exact to the seventh power") {
     seventh += rosin::gauss4::weight[j] * std::pow(rosin::gauss4::node[j], 7);
     eighth += rosin::gauss4::weight[j] * std::pow(rosin::gauss4::node[j], 8);
   }
-  CHECK(seventh == doctest::Approx(1.0 / 8).epsilon(1e-13));
+  CHECK(seventh == test::approx(1.0 / 8).epsilon(1e-13));
   CHECK(std::abs(eighth - 1.0 / 9) > 1e-6);
 }

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -61,12 +63,12 @@ TEST_CASE("before the release the wire's force is shared as a lever shares it") 
   REQUIRE(take);
   CHECK(take->size() == 1280);
   for (const std::size_t n : {0U, 100U, 460U}) {
-    CHECK(take->force_near_N[n] == doctest::Approx(0.75 * 0.63));
-    CHECK(take->force_far_N[n] == doctest::Approx(0.75 * 0.37));
-    CHECK(take->contact_force_N[n] == doctest::Approx(0.75));
+    CHECK(take->force_near_N[n] == test::approx(0.75 * 0.63));
+    CHECK(take->force_far_N[n] == test::approx(0.75 * 0.37));
+    CHECK(take->contact_force_N[n] == test::approx(0.75));
     CHECK(std::abs(take->centre_velocity_m_s[n]) < 1e-6);
   }
-  CHECK(take->contact_force_N[512] == doctest::Approx(0.375).epsilon(1e-6));  // the low-passed step is half way at t0
+  CHECK(take->contact_force_N[512] == test::approx(0.375).epsilon(1e-6));  // the low-passed step is half way at t0
   CHECK(take->contact_force_N[1000] == 0.0);
 }
 
@@ -89,7 +91,7 @@ TEST_CASE("frequency and Q of the recorded partials are the string's") {
     const double time = 8000 / 128e3;
     CAPTURE(n);
     CHECK(std::abs(std::arg(ratio)) < 2e-3 + w * time / (8 * 700.0 * 700.0) * 1.1);  // damping lowers the pitch by 1/(8 Q^2)
-    CHECK(-std::log(std::abs(ratio)) / time == doctest::Approx(w / (2 * 700)).epsilon(2e-3));
+    CHECK(-std::log(std::abs(ratio)) / time == test::approx(w / (2 * 700)).epsilon(2e-3));
   }
 }
 
@@ -153,8 +155,7 @@ TEST_CASE("modes left out hardly matter") {
 TEST_CASE("a release before the recording begins is the tail of the same motion") {
   const rosin::modal_pluck early{.release_s = 1.0 / 128e3, .duration_s = 0.01}, late{.release_s = 0.004, .duration_s = 0.02};
   const auto a = rosin::simulate_pluck(e_rig(), early), b = rosin::simulate_pluck(e_rig(), late);
-  for (std::size_t n = 0; n < a->size(); n += 3)
-    CHECK(a->force_far_N[n] == doctest::Approx(b->force_far_N[n + 511]).epsilon(1e-9));
+  for (std::size_t n = 0; n < a->size(); n += 3) CHECK(a->force_far_N[n] == test::approx(b->force_far_N[n + 511]).epsilon(1e-9));
 }
 
 TEST_CASE("senseless plucks are refused") {

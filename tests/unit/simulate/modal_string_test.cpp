@@ -5,6 +5,8 @@
 
 #include <rosin/propagate/dispersion.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -22,10 +24,10 @@ TEST_CASE("mode n lies where the wave on the stiff string fits n half waves in")
   CHECK(modes.back().omega_rad_s < 2 * pi * 250e3);
   for (const auto& m : modes) {
     const double k = rosin::phase_rate(m.omega_rad_s, e_string.stiffness_s2()) / e_string.wave_speed_m_s();
-    CHECK(k * e_string.length_m == doctest::Approx(m.number * pi).epsilon(1e-10));
-    CHECK(m.inverse_quality == doctest::Approx(1e-3 + 1e-8 * m.omega_rad_s / (2 * pi)));
+    CHECK(k * e_string.length_m == test::approx(m.number * pi).epsilon(1e-10));
+    CHECK(m.inverse_quality == test::approx(1e-3 + 1e-8 * m.omega_rad_s / (2 * pi)));
   }
-  CHECK(modes[0].omega_rad_s == doctest::Approx(2 * pi * 660 * std::sqrt(1 + e_string.inharmonicity())));
+  CHECK(modes[0].omega_rad_s == test::approx(2 * pi * 660 * std::sqrt(1 + e_string.inharmonicity())));
 }
 
 TEST_CASE("the pole solves the oscillator's equation") {
@@ -37,10 +39,10 @@ TEST_CASE("the pole solves the oscillator's equation") {
 
 TEST_CASE("shape and parity, also of high modes") {
   rosin::string_mode mode{.number = 2};
-  CHECK(mode.shape(0.25) == doctest::Approx(1.0));
+  CHECK(mode.shape(0.25) == test::approx(1.0));
   CHECK(mode.parity() == -1);
   mode.number = 100001;
-  CHECK(mode.shape(0.5) == doctest::Approx(1.0));
+  CHECK(mode.shape(0.5) == test::approx(1.0));
   CHECK(mode.parity() == 1);
 }
 
@@ -58,9 +60,9 @@ TEST_CASE("statics: the modes' sums are the deflected string's shape and forces"
       }
       CAPTURE(B);
       CAPTURE(beta);
-      CHECK(rosin::static_compliance_m_N(string, beta) == doctest::Approx(deflection).epsilon(2e-5));
-      CHECK(near == doctest::Approx(1 - beta).epsilon(2e-4));
-      CHECK(far == doctest::Approx(beta).epsilon(2e-3));
+      CHECK(rosin::static_compliance_m_N(string, beta) == test::approx(deflection).epsilon(2e-5));
+      CHECK(near == test::approx(1 - beta).epsilon(2e-4));
+      CHECK(far == test::approx(beta).epsilon(2e-3));
     }
   }
 }
@@ -76,11 +78,11 @@ TEST_CASE("the compliance left out falls as the cube of the number of modes or f
 TEST_CASE("torsion: harmonic, one Q, and as stiff as the surface against both ends") {
   const rosin::modal_rig rig{.string = e_string, .torsion = {7, 3.5, 15}};
   const auto modes = rosin::torsional_modes(rig, 4e7);
-  CHECK(modes[2].omega_rad_s == doctest::Approx(2 * pi * 3 * 7 * 660));
-  CHECK(modes[0].inverse_quality == doctest::Approx(1.0 / 15));
+  CHECK(modes[2].omega_rad_s == test::approx(2 * pi * 3 * 7 * 660));
+  CHECK(modes[0].inverse_quality == test::approx(1.0 / 15));
   double deflection = 0;
   for (const auto& m : modes) deflection += std::pow(m.shape(0.3) / m.omega_rad_s, 2) / m.mass_kg;
   const double Z = e_string.impedance_Ns_m() * 3.5, c = e_string.wave_speed_m_s() * 7;  // stiffness Z c per length
-  CHECK(deflection == doctest::Approx(0.3 * 0.7 * 0.314 / (Z * c)).epsilon(1e-3));
+  CHECK(deflection == test::approx(0.3 * 0.7 * 0.314 / (Z * c)).epsilon(1e-3));
   CHECK(rosin::torsional_modes({.string = e_string}, 4e7).empty());
 }

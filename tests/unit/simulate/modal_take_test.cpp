@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 rosin::modal_rig sound_rig() {
@@ -40,8 +42,8 @@ TEST_CASE("what cannot be simulated is named") {
 TEST_CASE("settings: the low-pass ends where the samples do, and the modes reach further") {
   const rosin::modal_settings usual;
   CHECK(rosin::problem_with(usual).empty());
-  CHECK(usual.low_pass().stop_Hz() == doctest::Approx(64e3));
-  CHECK(usual.low_pass().pass_Hz() == doctest::Approx(55.04e3));
+  CHECK(usual.low_pass().stop_Hz() == test::approx(64e3));
+  CHECK(usual.low_pass().pass_Hz() == test::approx(55.04e3));
   CHECK(complains(rosin::problem_with({.oversampling = 0}), "oversampling"));
   CHECK(complains(rosin::problem_with({.mode_limit_Hz = 50e3}), "modes"));
   CHECK(complains(rosin::problem_with({.pass_Hz = 30e3, .stop_Hz = 20e3}), "low-pass"));

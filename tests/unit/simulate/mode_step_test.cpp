@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using complex = std::complex<double>;
@@ -61,14 +63,14 @@ TEST_CASE("held at rest it stays, and the force that holds it is the stiffness t
   for (int n = 0; n < 100; ++n) {
     const auto s = mode.advance(force);
     CHECK(std::abs(s.velocity) < 1e-12);
-    CHECK(s.displacement == doctest::Approx(x).epsilon(1e-10));
+    CHECK(s.displacement == test::approx(x).epsilon(1e-10));
   }
 }
 
 TEST_CASE("mobility is the velocity per force at the step's end, and a mode that does not move has none") {
   rosin::driven_mode mode{body, 1e-5};
   const double without = mode.free();
-  CHECK(mode.advance(2).velocity - without == doctest::Approx(2 * mode.mobility()).epsilon(1e-12));
+  CHECK(mode.advance(2).velocity - without == test::approx(2 * mode.mobility()).epsilon(1e-12));
   rosin::driven_mode still;
   CHECK(still.mobility() == 0);
   CHECK(still.advance(3).velocity == 0);

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double step_s = 1 / 1024e3, pi = 3.14159265358979323846;
@@ -40,8 +42,8 @@ TEST_CASE("at rest every mode holds the same force, and stays") {
   rosin::moving_support end{1, {{low}, {high}}};
   end.rest_at(1e-5);
   const double force = end.stiffness() * 1e-5;
-  CHECK(end.sum(&rosin::moving_mode::u) == doctest::Approx(1e-5));
-  CHECK(end.modes[0].u * end.modes[0].stiffness() == doctest::Approx(end.modes[1].u * end.modes[1].stiffness()));
+  CHECK(end.sum(&rosin::moving_mode::u) == test::approx(1e-5));
+  CHECK(end.modes[0].u * end.modes[0].stiffness() == test::approx(end.modes[1].u * end.modes[1].stiffness()));
   for (int n = 0; n < 1000; ++n) end.move(step_s, force);
-  CHECK(end.sum(&rosin::moving_mode::u) == doctest::Approx(1e-5));
+  CHECK(end.sum(&rosin::moving_mode::u) == test::approx(1e-5));
 }

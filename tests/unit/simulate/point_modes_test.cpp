@@ -7,6 +7,8 @@
 
 #include <array>
 
+#include "support/approx.hpp"
+
 TEST_CASE("a point of the string in a bank of modes with all its ports and ends moves just so") {
   const rosin::modal_rig rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660}, .torsion = {7, 3.5, 15}};
   for (const double limit_Hz : {5e3, 40e3, 110e3}) {  // one, eight and more modes
@@ -14,8 +16,8 @@ TEST_CASE("a point of the string in a bank of modes with all its ports and ends 
     const double position = 0.237, h = 1 / 256e3;
     rosin::point_modes point{modes, position, h};
     rosin::modal_bank<1> bank{modes, rosin::damping_convention::viscous, {position}, h};
-    CHECK(point.mobility() == doctest::Approx(bank.mobility(0, 0)));
-    CHECK(point.compliance() == doctest::Approx(bank.compliance(0)));
+    CHECK(point.mobility() == test::approx(bank.mobility(0, 0)));
+    CHECK(point.compliance() == test::approx(bank.compliance(0)));
     for (int i = 0; i < 400; ++i) {
       const double force = i < 200 ? std::sin(0.01 * i * i) : 0.0;
       point.advance(force);
@@ -36,7 +38,7 @@ TEST_CASE("a lasting force brings it to rest, deflected by its compliance; witho
     point.advance(2);
   }
   CHECK(std::abs(last) < 1e-9);
-  CHECK(deflection == doctest::Approx(2 * point.compliance()).epsilon(2e-3));
+  CHECK(deflection == test::approx(2 * point.compliance()).epsilon(2e-3));
   rosin::point_modes none;
   none.advance(1);
   CHECK(none.free() == 0.0);

@@ -5,13 +5,15 @@
 
 #include <rosin/friction/velocity_curve.hpp>
 
+#include "support/approx.hpp"
+
 TEST_CASE("straight between break points, constant outside") {
   const rosin::profiled_rod rod{.speed_m_s = {{0.1, 0.2}, {0.3, -0.2}, {0.4, 0}}, .normal_force_N = {{0.2, 0.5}}};
   CHECK(rod(0).velocity_m_s == 0.2);
   CHECK(rod(0.1).velocity_m_s == 0.2);
-  CHECK(rod(0.15).velocity_m_s == doctest::Approx(0.1));
-  CHECK(rod(0.3).velocity_m_s == doctest::Approx(-0.2));
-  CHECK(rod(0.375).velocity_m_s == doctest::Approx(-0.05));
+  CHECK(rod(0.15).velocity_m_s == test::approx(0.1));
+  CHECK(rod(0.3).velocity_m_s == test::approx(-0.2));
+  CHECK(rod(0.375).velocity_m_s == test::approx(-0.05));
   CHECK(rod(7).velocity_m_s == 0);
   CHECK(rod(0).normal_force_N == 0.5);
   CHECK(rod(1).normal_force_N == 0.5);
@@ -23,8 +25,8 @@ TEST_CASE("what has no points is a steady stroke") {
   const rosin::profiled_rod moved{.steady = steady, .speed_m_s = {{0, 0}, {0.1, 1}}};
   for (const double t : {0.0, 0.013, 0.05}) {
     CHECK(pressed(t).velocity_m_s == steady(t).velocity_m_s);
-    CHECK(pressed(t).normal_force_N == doctest::Approx(10 * t));
-    CHECK(moved(t).velocity_m_s == doctest::Approx(10 * t));
+    CHECK(pressed(t).normal_force_N == test::approx(10 * t).scale(1));
+    CHECK(moved(t).velocity_m_s == test::approx(10 * t).scale(1));
     CHECK(moved(t).normal_force_N == 0.4);
   }
 }
@@ -56,6 +58,6 @@ TEST_CASE("it travels where it has a way, and stays where it has none") {
   const rosin::profiled_rod rod{.place = {{0.1, 0.3}, {0.2, 0.1}}};
   CHECK(rod.travels());
   CHECK(rod.position(0) == 0.3);
-  CHECK(rod.position(0.15) == doctest::Approx(0.2));
+  CHECK(rod.position(0.15) == test::approx(0.2));
   CHECK(rod.position(1) == 0.1);
 }

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 bool within(double x, double low, double high) { return x >= low && x <= high; }
@@ -72,12 +74,12 @@ TEST_CASE("takes are recorded through gain, noise and converter, one range for a
         if (c == 0) loudest = std::max(loudest, std::abs(newtons[n]));
       }
       CHECK(take.channels[c].clipped == 0);
-      CHECK(std::sqrt(square / static_cast<double>(force.size())) == doctest::Approx(rig.noise_N).epsilon(0.1));
+      CHECK(std::sqrt(square / static_cast<double>(force.size())) == test::approx(rig.noise_N).epsilon(0.1));
       CHECK(take.channels[c].newtons_per_full_scale == recordings.takes[0].channels[c].newtons_per_full_scale);
     }
   }
-  CHECK(loudest / recordings.takes[0].channels[0].newtons_per_full_scale == doctest::Approx(rig.peak_share).epsilon(0.01));
-  CHECK(recordings.takes[0].truth.force_near_N[0] == doctest::Approx(rig.plucks[0].force_N * (1 - rig.position)));
+  CHECK(loudest / recordings.takes[0].channels[0].newtons_per_full_scale == test::approx(rig.peak_share).epsilon(0.01));
+  CHECK(recordings.takes[0].truth.force_near_N[0] == test::approx(rig.plucks[0].force_N * (1 - rig.position)));
 }
 
 TEST_CASE("noise differs from take to take and from end to end") {

@@ -7,6 +7,8 @@
 #include <rosin/simulate/profiled_rod.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double rate = 48000, f0 = 480;  // 100 samples a period
@@ -30,32 +32,32 @@ std::vector<double> every(double periods, double from) {
 TEST_CASE("drawn patterns get their names and transients") {
   const auto helmholtz = with_slips_at(every(1, 7.25));
   CHECK(helmholtz.regime == rosin::bowed_regime::helmholtz);
-  CHECK(helmholtz.transient_periods == doctest::Approx(7.25).epsilon(0.01));
-  CHECK(helmholtz.slips_per_period == doctest::Approx(1).epsilon(0.1));
+  CHECK(helmholtz.transient_periods == test::approx(7.25).epsilon(0.01));
+  CHECK(helmholtz.slips_per_period == test::approx(1).epsilon(0.1));
 
   auto twice = every(1, 10);
   for (const double t : every(1, 10.37)) twice.push_back(t);
   std::sort(twice.begin(), twice.end());
   const auto multiple = with_slips_at(twice);
   CHECK(multiple.regime == rosin::bowed_regime::multiple_slip);
-  CHECK(multiple.transient_periods == doctest::Approx(10).epsilon(0.05));
+  CHECK(multiple.transient_periods == test::approx(10).epsilon(0.05));
 
   CHECK(with_slips_at(every(3, 4)).regime == rosin::bowed_regime::low_frequency);
   CHECK(with_slips_at({}).regime == rosin::bowed_regime::none);
   CHECK(with_slips_at({3.5}).regime == rosin::bowed_regime::none);
-  CHECK(with_slips_at({3.5}).transient_periods == doctest::Approx(3.5));
+  CHECK(with_slips_at({3.5}).transient_periods == test::approx(3.5));
 
   std::vector<double> wild;
   for (int i = 0; i < 70; ++i) wild.push_back(1 + 0.8 * i + 0.3 * std::sin(i * i));
   const auto raucous = with_slips_at(wild);
   CHECK(raucous.regime == rosin::bowed_regime::raucous);
-  CHECK(raucous.transient_periods == doctest::Approx(60));
+  CHECK(raucous.transient_periods == test::approx(60));
 }
 
 TEST_CASE("a pattern that breaks off in between begins after the break") {
   auto onsets = every(1, 5);
   onsets.erase(onsets.begin() + 15);  // the one at 20
-  CHECK(with_slips_at(onsets).transient_periods == doctest::Approx(21).epsilon(0.01));
+  CHECK(with_slips_at(onsets).transient_periods == test::approx(21).epsilon(0.01));
   onsets.erase(onsets.end() - 5);
   CHECK(with_slips_at(onsets).regime == rosin::bowed_regime::raucous);
 }

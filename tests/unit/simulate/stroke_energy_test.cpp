@@ -5,10 +5,12 @@
 
 #include <cmath>
 
+#include "support/approx.hpp"
+
 TEST_CASE("what is not found again is told as a part of what was given") {
   rosin::stroke_energy e{.rod_J = 10, .friction_J = 6, .transverse = {3, 1, 1.7}, .torsion = {1, 0.2, 0.8}, .left_out_J = 0.1};
-  CHECK(e.string_error() == doctest::Approx(0.3 / 4));
-  CHECK(e.error() == doctest::Approx(0.2 / 10));
+  CHECK(e.string_error() == test::approx(0.3 / 4));
+  CHECK(e.error() == test::approx(0.2 / 10));
   e.transverse.lost_J = 2;
   CHECK(std::abs(e.string_error()) < 1e-15);
   CHECK(rosin::stroke_energy{}.error() == 0.0);

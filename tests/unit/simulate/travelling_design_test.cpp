@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/simulate/travelling_design.hpp>
 
+#include "support/approx.hpp"
 #include "support/violin_e_string.hpp"
 
 #include <doctest/doctest.h>
@@ -19,8 +20,8 @@ TEST_CASE("a round of the whole string has the poles of all partials, wherever t
   for (std::size_t j = 0; j < 2; ++j) loop.echo[j] = {static_cast<int>(k.loop[j].first), k.loop[j].taps};
   for (const auto& mode : rosin::transverse_modes(rig.string, 30e3)) {
     const auto p = rosin::pole_near(loop, mode.pole(), k.step_s);
-    CHECK(p.imag() == doctest::Approx(mode.pole().imag()).epsilon(1e-6));
-    CHECK(p.real() == doctest::Approx(mode.pole().real()).epsilon(3e-3));
+    CHECK(p.imag() == test::approx(mode.pole().imag()).epsilon(1e-6));
+    CHECK(p.real() == test::approx(mode.pole().real()).epsilon(3e-3));
   }
 }
 

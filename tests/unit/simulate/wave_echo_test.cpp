@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 const rosin::string_parameters e_string{.length_m = 0.314,
@@ -36,7 +38,7 @@ TEST_CASE("pitch within a hundredth of a cent and Q within one in a thousand of 
       for (const auto& mode : rosin::transverse_modes(string, 50e3)) {
         const auto wanted = mode.pole(), found = rosin::pole_near(*loop, wanted, 1 / 256e3);
         CHECK(std::abs(1200 * std::log2(std::abs(found) / std::abs(wanted))) < 0.01);
-        CHECK(-std::abs(found) / (2 * found.real()) == doctest::Approx(1 / mode.inverse_quality).epsilon(1e-3));
+        CHECK(-std::abs(found) / (2 * found.real()) == test::approx(1 / mode.inverse_quality).epsilon(1e-3));
       }
     }
 }

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 TEST_CASE("lags, look-ahead and mobility, also in single precision") {
   rosin::wave_kernels<double> k;
   k.stride = 2;
@@ -15,8 +17,8 @@ TEST_CASE("lags, look-ahead and mobility, also in single precision") {
   CHECK(k.reach_back() == 9);
   CHECK(k.look_ahead() == 2);
   CHECK(k.fill_ahead() == 3);
-  CHECK(k.mobility_m_Ns() == doctest::Approx(2.75));
-  CHECK(single.mobility_m_Ns() == doctest::Approx(2.75));
+  CHECK(k.mobility_m_Ns() == test::approx(2.75));
+  CHECK(single.mobility_m_Ns() == test::approx(2.75));
   CHECK(single.echo[0].taps[1] == 0.25F);
   CHECK(single.echo[0].last() == 6);
 }

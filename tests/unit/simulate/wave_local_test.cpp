@@ -7,6 +7,8 @@
 
 #include <rosin/simulate/modal_contact.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 const rosin::string_parameters e_string{
@@ -19,13 +21,13 @@ TEST_CASE("an ideal string answers at once with half its admittance") {
   string.bending_stiffness_Nm2 = 0;
   const auto taps = rosin::local_response(string, 1e-6);
   REQUIRE(taps.size() == 1);
-  CHECK(taps[0] == doctest::Approx(1 / (2 * string.impedance_Ns_m())));
+  CHECK(taps[0] == test::approx(1 / (2 * string.impedance_Ns_m())));
 }
 
 TEST_CASE("at 0 Hz the stiff string answers as an ideal one, and nothing comes before the force") {
   for (const double rate : {128e3, 1.024e6}) {
     const auto taps = rosin::local_response(e_string, 1 / rate);
-    CHECK(std::accumulate(taps.begin(), taps.end(), 0.0) * 2 * e_string.impedance_Ns_m() == doctest::Approx(1).epsilon(1e-6));
+    CHECK(std::accumulate(taps.begin(), taps.end(), 0.0) * 2 * e_string.impedance_Ns_m() == test::approx(1).epsilon(1e-6));
     CHECK(taps.front() > taps.back());
     CHECK(std::abs(taps.back()) < 1e-6 * taps.front());
   }
@@ -43,11 +45,11 @@ TEST_CASE("the modes of a bounded string begin in the same way, before any echo"
     modes.apply(force);
     if (n < static_cast<int>(taps.size())) local += taps[static_cast<std::size_t>(n)];
   }
-  CHECK(local == doctest::Approx(modal).epsilon(5e-3));
+  CHECK(local == test::approx(modal).epsilon(5e-3));
 }
 
 TEST_CASE("a line through samples weighs a frequency by sinc squared") {
   CHECK(rosin::straight_line_weight(0, 1e-3) == 1);
   const double w = 1200, h = 1e-3, x = w * h / 2;
-  CHECK(rosin::straight_line_weight(w, h) == doctest::Approx(std::pow(std::sin(x) / x, 2)));
+  CHECK(rosin::straight_line_weight(w, h) == test::approx(std::pow(std::sin(x) / x, 2)));
 }

@@ -5,6 +5,8 @@
 
 #include <numeric>
 
+#include "support/approx.hpp"
+
 TEST_CASE("the response to a growing or dying motion is the sum over the taps") {
   const rosin::fir kernel{3, {0.5, -0.25, 2}};
   const std::complex<double> z{0.9, 0.3};
@@ -15,10 +17,10 @@ TEST_CASE("the response to a growing or dying motion is the sum over the taps") 
 TEST_CASE("an echo is -1 with its delay at 0 Hz, whatever the taps cut off") {
   const auto lossy = [](double f) { return -std::exp(std::complex<double>{-1e-5 * f, -2 * std::numbers::pi * f * 30.3 / 48e3}); };
   const auto echo = rosin::sample_echo(lossy, {15e3, 23e3}, 48e3, 20, 44, 30.3);
-  CHECK(std::accumulate(echo.taps.begin(), echo.taps.end(), 0.0) == doctest::Approx(-1));
+  CHECK(std::accumulate(echo.taps.begin(), echo.taps.end(), 0.0) == test::approx(-1));
   double moment = 0;
   for (std::size_t k = 0; k < echo.taps.size(); ++k) moment -= echo.taps[k] * (20 + static_cast<double>(k));
-  CHECK(moment == doctest::Approx(30.3));
+  CHECK(moment == test::approx(30.3));
 }
 
 TEST_CASE("poles are set exactly, and the loop's own poles are found there") {
@@ -37,7 +39,7 @@ TEST_CASE("the gain counts where a partial could grow, and only there") {
   rosin::wave_loop loop;
   loop.echo[0] = {10, {-1}};
   loop.echo[1] = {20, {-0.9}};
-  CHECK(rosin::largest_gain(loop, 30) == doctest::Approx(0.9));
+  CHECK(rosin::largest_gain(loop, 30) == test::approx(0.9));
   loop.echo[1].taps = {-1.2};
-  CHECK(rosin::largest_gain(loop, 30) == doctest::Approx(1.2));
+  CHECK(rosin::largest_gain(loop, 30) == test::approx(1.2));
 }

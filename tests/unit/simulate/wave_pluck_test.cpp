@@ -2,6 +2,7 @@
 #include <rosin/simulate/wave_pluck.hpp>
 
 #include "support/apart.hpp"
+#include "support/approx.hpp"
 #include "support/violin_e_string.hpp"
 
 #include <doctest/doctest.h>
@@ -35,7 +36,7 @@ TEST_CASE("a pluck by waves is one by modes: let go at once, between two steps, 
     CHECK(test::apart(waves->contact_force_N, modes->contact_force_N) < 1e-3);
     CHECK(test::apart(waves->centre_velocity_m_s, modes->centre_velocity_m_s) < 3e-3);
     for (const double v : waves->torsion_velocity_m_s) CHECK(v == 0);
-    CHECK(waves->force_near_N.front() == doctest::Approx(0.73 * 0.8).epsilon(1e-6));
+    CHECK(waves->force_near_N.front() == test::approx(0.73 * 0.8).epsilon(1e-6));
   }
 }
 
@@ -51,7 +52,7 @@ TEST_CASE("on ends that move the wire's force is shared as they give way, and th
   const auto waves = rosin::simulate_wave_pluck(rig, pluck, settings, burden.string.ends);
   REQUIRE_MESSAGE(modes, modes.error());
   REQUIRE_MESSAGE(waves, waves.error());
-  CHECK(waves->force_near_N[100] == doctest::Approx(modes->force_near_N[100]).epsilon(1e-4));
+  CHECK(waves->force_near_N[100] == test::approx(modes->force_near_N[100]).epsilon(1e-4));
   CHECK(std::abs(waves->force_near_N[100] - 0.7) > 2e-4);
   CHECK(test::apart(waves->force_near_N, modes->force_near_N) < 3e-3);
   CHECK(test::apart(waves->force_far_N, modes->force_far_N) < 3e-3);

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 const rosin::modal_rig rig{
@@ -13,7 +15,7 @@ const rosin::modal_rig rig{
 TEST_CASE("sound settings have nothing said against them") {
   CHECK(rosin::problem_with(rosin::wave_settings{}).empty());
   CHECK(rosin::problem_with_contact(rig, 0.3, {}).empty());
-  CHECK(rosin::wave_settings{}.step_s() == doctest::Approx(1 / 1.024e6));
+  CHECK(rosin::wave_settings{}.step_s() == test::approx(1 / 1.024e6));
 }
 
 TEST_CASE("what cannot be is said") {

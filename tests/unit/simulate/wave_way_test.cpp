@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/simulate/wave_way.hpp>
 
+#include "support/approx.hpp"
 #include "support/violin_e_string.hpp"
 
 #include <doctest/doctest.h>
@@ -58,7 +59,7 @@ TEST_CASE("beyond the way a contact is at its end, and what does not change is l
   for (const double distance : {0.02, 0.11}) CHECK(scattered(way, distance) == scattered(way, 0.11));
   CHECK(scattered(way, 0.7) == scattered(way, 0.5));
   for (const double distance : {0.11, 0.1234, 0.15})
-    CHECK(response(scattered(way, distance), 0).real() == doctest::Approx(1).epsilon(1e-12));
+    CHECK(response(scattered(way, distance), 0).real() == test::approx(1).epsilon(1e-12));
   CHECK(rosin::wave_way<double>{}.empty());
 }
 
@@ -69,5 +70,5 @@ TEST_CASE("in single precision the same kernels") {
   single.to_end(0.1301).scatter(1.0F, out.data());
   const auto exact = scattered(way, 0.1301);
   for (std::size_t i = 0; i < out.size(); ++i)
-    CHECK(static_cast<double>(out[i]) == doctest::Approx(exact[i]).epsilon(1e-5).scale(0.1));
+    CHECK(static_cast<double>(out[i]) == test::approx(exact[i]).epsilon(1e-5).scale(0.1));
 }

@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "support/approx.hpp"
+
 namespace {
 
 /// y = 2 a - 3 b + level + noise with correlation `hold` samples and a few outliers.
@@ -33,8 +35,8 @@ TEST_CASE("stick regression: coefficients and levels, with errors that hold") {
   double chi2 = 0;
   for (int run = 0; run < 60; ++run) {
     const auto s = rosin::stick_regression({rows(source, 0.5, 600, 1, 0), rows(source, -0.2, 400, 1, 0)});
-    CHECK(s.own[0][0] == doctest::Approx(0.5).epsilon(0.1));
-    CHECK(s.own[1][0] == doctest::Approx(-0.2).epsilon(0.2));
+    CHECK(s.own[0][0] == test::approx(0.5).epsilon(0.1));
+    CHECK(s.own[1][0] == test::approx(-0.2).epsilon(0.2));
     chi2 += std::pow(s.shared[0] - 2, 2) / s.covariance(0, 0) / 120 + std::pow(s.shared[1] + 3, 2) / s.covariance(1, 1) / 120;
     CHECK(s.scale < 0.1);
     CHECK(s.scale > 0.07);
@@ -47,8 +49,8 @@ TEST_CASE("stick regression: coefficients and levels, with errors that hold") {
 TEST_CASE("stick regression: slips among the rows hardly count") {
   std::mt19937 source(2);
   const auto s = rosin::stick_regression({rows(source, 0.5, 2000, 1, 0.05)});
-  CHECK(s.shared[0] == doctest::Approx(2).epsilon(0.01));
-  CHECK(s.own[0][0] == doctest::Approx(0.5).epsilon(0.05));
+  CHECK(s.shared[0] == test::approx(2).epsilon(0.01));
+  CHECK(s.own[0][0] == test::approx(0.5).epsilon(0.05));
 }
 
 TEST_CASE("stick regression: correlated rows count for less") {
@@ -63,8 +65,8 @@ TEST_CASE("stick regression: what is known beforehand") {
   std::mt19937 source(4);
   rosin::stick_prior prior{Eigen::Vector2d(1, 0), Eigen::Vector2d(1e12, 0)};
   const auto s = rosin::stick_regression({rows(source, 0.5, 600, 1, 0)}, 0, prior);
-  CHECK(s.shared[0] == doctest::Approx(1).epsilon(1e-3));
-  CHECK(s.shared[1] == doctest::Approx(-3).epsilon(0.2));
+  CHECK(s.shared[0] == test::approx(1).epsilon(1e-3));
+  CHECK(s.shared[1] == test::approx(-3).epsilon(0.2));
 }
 
 TEST_CASE("stick regression: likelihood prefers the model that is true") {

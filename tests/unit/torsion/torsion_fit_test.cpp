@@ -9,6 +9,8 @@
 #include <rosin/simulate/converter.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 
+#include "support/approx.hpp"
+
 namespace {
 
 constexpr double rate = 128e3;
@@ -59,9 +61,9 @@ TEST_CASE("torsion fit: speed to 1 %, impedance to 5 %, Q to 20 %, without being
     const auto fit = rosin::fit_torsion(takes_of(strokes, c.position));
     REQUIRE(fit);
     CHECK(fit->decided());
-    CHECK(fit->value.speed_ratio == doctest::Approx(c.torsion.speed_ratio).epsilon(0.003));
-    CHECK(fit->value.impedance_ratio == doctest::Approx(c.torsion.impedance_ratio).epsilon(0.03));
-    CHECK(fit->value.q == doctest::Approx(c.torsion.quality).epsilon(0.08));
+    CHECK(fit->value.speed_ratio == test::approx(c.torsion.speed_ratio).epsilon(0.003));
+    CHECK(fit->value.impedance_ratio == test::approx(c.torsion.impedance_ratio).epsilon(0.03));
+    CHECK(fit->value.q == test::approx(c.torsion.quality).epsilon(0.08));
     CHECK(std::abs(fit->value.speed_ratio - c.torsion.speed_ratio) < 3.5 * fit->sd.speed_ratio);
     CHECK(std::abs(fit->value.impedance_ratio - c.torsion.impedance_ratio) < 3.5 * fit->sd.impedance_ratio);
     CHECK(std::abs(fit->value.q - c.torsion.quality) < 3.5 * fit->sd.q);
@@ -79,7 +81,7 @@ TEST_CASE("torsion fit: wound strings that turn slowly, slack ones that turn fas
     const auto fit = rosin::fit_torsion(takes_of(strokes, 0.23));
     REQUIRE(fit);
     CHECK(fit->decided());
-    CHECK(fit->value.speed_ratio == doctest::Approx(speed).epsilon(0.01));
+    CHECK(fit->value.speed_ratio == test::approx(speed).epsilon(0.01));
   }
 }
 

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/approx.hpp"
+
 namespace {
 
 using complex = std::complex<double>;
@@ -39,12 +41,12 @@ TEST_CASE("torsion: the transfer function is the sum over the torsional modes") 
 TEST_CASE("torsion: first resonance, height and width at Q = 15") {
   const auto at = e_string(15);
   const double f1 = 0.5 / (at.delay_s[0] + at.delay_s[1]);
-  CHECK(f1 == doctest::Approx(7 * 660.0));
+  CHECK(f1 == test::approx(7 * 660.0));
   const double peak = std::abs(at(f1)), half = std::abs(at(f1 * (1 + 0.5 / 15)));
-  CHECK(half / peak == doctest::Approx(1 / std::sqrt(2.0)).epsilon(0.1));
+  CHECK(half / peak == test::approx(1 / std::sqrt(2.0)).epsilon(0.1));
   // 2 sin^2(pi p) / (M w / Q)
   const double mass = at.impedance_Ns_m * (at.delay_s[0] + at.delay_s[1]), w = 2 * std::numbers::pi * f1;
-  CHECK(peak == doctest::Approx(2 * std::pow(std::sin(0.3 * std::numbers::pi), 2) * 15 / (mass * w)).epsilon(0.03));
+  CHECK(peak == test::approx(2 * std::pow(std::sin(0.3 * std::numbers::pi), 2) * 15 / (mass * w)).epsilon(0.03));
 }
 
 TEST_CASE("torsion: with its dispersion the answer does not come before the question") {
@@ -77,7 +79,7 @@ TEST_CASE("torsion: where waves disperse, speed and Q are those of the first res
   at.causal = true;
   const double f1 = 7 * 660.0;
   CHECK(std::abs(at(f1) - plain(f1)) < 1e-12);
-  CHECK(at.share_of_delay(6.283185307179586 * f1 * std::exp(1.0)) == doctest::Approx(1 - 0.021).epsilon(0.001));
+  CHECK(at.share_of_delay(6.283185307179586 * f1 * std::exp(1.0)) == test::approx(1 - 0.021).epsilon(0.001));
   const auto grid = at.on_grid(37.0, 2000);
   for (const std::size_t k : {0U, 1U, 125U, 1999U}) CHECK(std::abs(grid[k] - at(37.0 * static_cast<double>(k))) < 1e-12);
 }
@@ -87,7 +89,7 @@ TEST_CASE("torsion: nothing moves under a steady force, and nothing overflows") 
   CHECK(std::abs(at(0.0)) == 0);
   CHECK(std::abs(at(1e-3)) < 1e-6);
   CHECK(std::isfinite(std::abs(at(1e9))));
-  CHECK(std::abs(at(1e9)) == doctest::Approx(1 / (2 * at.impedance_Ns_m)));  // nothing comes back: a bare waveguide
+  CHECK(std::abs(at(1e9)) == test::approx(1 / (2 * at.impedance_Ns_m)));  // nothing comes back: a bare waveguide
   const std::vector<double> steady(500, 0.7);
   for (const double v : rosin::torsion_velocity(at, steady, 128e3)) CHECK(std::abs(v) < 1e-12);
   CHECK(rosin::torsion_velocity(at, {}, 128e3).empty());
@@ -101,7 +103,7 @@ TEST_CASE("torsion: a force in time gives the waves that a step sends out, one a
   for (std::size_t i = 2000; i < force.size(); ++i) force[i] = 1;
   const auto v = rosin::torsion_velocity(at, force, rate);
   const double echo = 2 * at.delay_s[0] * rate;
-  CHECK(v[2000 + static_cast<std::size_t>(0.5 * echo)] * 2 * at.impedance_Ns_m == doctest::Approx(1).epsilon(0.02));
+  CHECK(v[2000 + static_cast<std::size_t>(0.5 * echo)] * 2 * at.impedance_Ns_m == test::approx(1).epsilon(0.02));
   CHECK(std::abs(v[2000 + static_cast<std::size_t>(1.5 * echo)] * 2 * at.impedance_Ns_m) < 0.03);
   CHECK(std::abs(v[1900]) * 2 * at.impedance_Ns_m < 0.02);  // constant Q looks ahead by very little
 }
