@@ -12,22 +12,15 @@ TEST_CASE("contact width: a contact at one point is not called wide") {
   CHECK((!h || !h->decided));
 }
 
-TEST_CASE("contact width: that of two places, and of five, whose parts slide on now and then while others hold") {
+TEST_CASE("contact width: of five places, some of which slide on now and then while others hold") {
   constexpr double width_m = 3e-3;
-  const struct {
-    int places;
-    double within;
-  } bows[] = {{2, 0.02}, {5, 0.1}};
-  for (const auto& bow : bows) {
-    CAPTURE(bow.places);
-    const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 81, 0.27, 0.1, 0.3e-3,
-                                      width_m, bow.places);
-    rosin::stick_bench bench({a.take()}, contact_rigs::declared());
-    const auto h = rosin::width_hypothesis(bench, {a.take()});
-    REQUIRE(h);
-    CHECK(h->decided);
-    const auto& width = h->parameters[0];
-    CHECK(std::abs(width.value / width_m - 1) < bow.within);
-    CHECK(std::abs(width.value - width_m) < 2 * width.sd);
-  }
+  const auto a =
+      contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 81, 0.27, 0.06, 0.3e-3, width_m, 5);
+  rosin::stick_bench bench({a.take()}, contact_rigs::declared());
+  const auto h = rosin::width_hypothesis(bench, {a.take()});
+  REQUIRE(h);
+  CHECK(h->decided);
+  const auto& width = h->parameters[0];
+  CHECK(std::abs(width.value / width_m - 1) < 0.1);
+  CHECK(std::abs(width.value - width_m) < 2 * width.sd);
 }
