@@ -15,7 +15,7 @@ TEST_CASE("contact width: a contact at one point is not called wide") {
 TEST_CASE("contact width: of five places, some of which slide on now and then while others hold") {
   constexpr double width_m = 3e-3;
   const auto a =
-      contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 81, 0.27, 0.06, 0.3e-3, width_m, 5);
+      contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 81, 0.27, 0.05, 0.3e-3, width_m, 5);
   rosin::stick_bench bench({a.take()}, contact_rigs::declared());
   const auto h = rosin::width_hypothesis(bench, {a.take()});
   REQUIRE(h);
