@@ -15,8 +15,9 @@ namespace rosin {
 namespace detail {
 
 /// How many samples do not stick, softly: sum of r^2 / (r^2 + s^2) (Geman and McClure 1985), s a twentieth of the rod's speed, with
-/// an offset and a compliance free. A slip counts no more for being fast: where parts of a bow slide on while others hold, a loss
-/// that grows with r, be it as slowly as Cauchy's, would rather have the slips slow than the places still.
+/// an offset and a compliance free, found from far (with Cauchy's weights) to near. A slip counts no more for being fast: where
+/// parts of a bow slide on while others hold, a loss that grows with r, be it as slowly as Cauchy's, would rather have the slips
+/// slow than the places still.
 [[nodiscard]] inline double loose_samples(const std::vector<double>& relative_m_s, const std::vector<double>& compliance,
                                           std::size_t begin, std::size_t end, double speed_m_s) {
   Eigen::Vector2d value(0, 0);

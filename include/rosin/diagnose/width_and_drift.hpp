@@ -30,7 +30,7 @@ struct width_and_drift {
   double half_delay_s = 0;  ///< half of the travel time over the width
   double relative = 0;      ///< tension in the strokes / in the plucks - 1
   double sd = 0;            ///< of the latter, by how the strokes differ
-  double gain = 0;          ///< log-likelihood over the same width at the plucks' tension, as if all samples were independent
+  double gain = 0;          ///< samples more that stick at both places than at any width without a drift
 };
 
 namespace detail {
