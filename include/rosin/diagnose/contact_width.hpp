@@ -147,15 +147,21 @@ struct settled_width {
   design_fit fit;
 };
 
-/// The width settled by Gauss-Newton steps, with whichever convention of torsional damping leaves less.
+/// The width settled by Gauss-Newton steps, and torsion with it where that is not declared, with whichever convention of torsional
+/// damping leaves less.
 [[nodiscard]] inline settled_width settle_width(stick_bench& bench, std::vector<wide_record>& wide,
                                                 const std::vector<std::vector<char>>& marked, double floor, width_model m) {
   const auto settled = [&](torsion_damping damping) {
     settled_width out{m, {}, {}};
     out.model.damping = damping;
     stick_prior held;
-    for (int step = 0; step < 2 && m.half_delay_s > 0; ++step)
-      out.model.half_delay_s *= std::exp(bounded_regression(width_design(bench, wide, marked, out.model), floor, held).shared[5]);
+    for (int step = 0; step < 2 && m.half_delay_s > 0; ++step) {
+      const auto shared = bounded_regression(width_design(bench, wide, marked, out.model), floor, held).shared;
+      out.model.half_delay_s *= std::exp(shared[5]);
+      if (bench.model().torsion) continue;
+      const Eigen::Vector3d turned = shared.segment<3>(2).cwiseMax(-0.1).cwiseMin(0.1);
+      out.model.torsion = torsion_values::from_logs(out.model.torsion.logs() + turned);
+    }
     out.design = width_design(bench, wide, marked, out.model);
     out.fit = fit_design(out.design, floor);
     return out;
@@ -164,6 +170,31 @@ struct settled_width {
   for (const auto other : {otherwise_shared, otherwise_dispersed})
     if (auto tried = settled(other(best.model.damping)); tried.fit.density > best.fit.density) best = std::move(tried);
   return best;
+}
+
+struct sought_width {
+  double searched = 0, below = 0;  ///< half delays: found by search; whose pole ends the band
+  std::vector<std::vector<char>> marked;
+  settled_width settled;
+};
+
+/// Sought, then settled. What torsion seems to be depends on the width, and the other way round: where it is not declared, in turn.
+[[nodiscard]] inline std::optional<sought_width> seek_width(stick_bench& bench, std::vector<wide_record>& wide, double floor,
+                                                            torsion_values torsion) {
+  std::optional<sought_width> out;
+  for (int round = 0; round < (bench.model().torsion ? 1 : 3); ++round) {
+    const double searched = search_width(wide[0], bench.records()[0], torsion);
+    if (!(searched > 0)) break;
+    sought_width now{searched, searched, sticking_at_both(bench.records(), wide, searched, searched, torsion), {}};
+    if (!enough(now.marked))  // too little sticks for as long as such a band smears
+      now.below = 0, now.marked = sticking_at_both(bench.records(), wide, searched, 0, torsion);
+    if (!enough(now.marked)) break;
+    now.settled =
+        settle_width(bench, wide, now.marked, floor, {.half_delay_s = searched, .torsion = torsion, .below = now.below});
+    torsion = now.settled.model.torsion;
+    out = std::move(now);
+  }
+  return out;
 }
 
 }  // namespace detail
@@ -180,15 +211,10 @@ struct settled_width {
   auto& records = bench.records();
   std::vector<wide_record> wide;
   for (std::size_t t = 0; t < takes.size(); ++t) wide.emplace_back(takes[t], records[t]);
-  const double searched = detail::search_width(wide[0], records[0], *torsion);
-  if (!(searched > 0)) return std::nullopt;
-  double below = searched;  // the half delay whose pole ends the band: none where too little sticks for as long as that smears
-  auto marked = detail::sticking_at_both(records, wide, searched, below, *torsion);
-  if (!detail::enough(marked)) marked = detail::sticking_at_both(records, wide, searched, below = 0, *torsion);
-  if (!detail::enough(marked)) return std::nullopt;
   const double floor = 1e-3 * bench.speed_m_s();
-  const auto found =
-      detail::settle_width(bench, wide, marked, floor, {.half_delay_s = searched, .torsion = *torsion, .below = below});
+  const auto sought = detail::seek_width(bench, wide, floor, *torsion);
+  if (!sought) return std::nullopt;
+  const auto& [searched, below, marked, found] = *sought;
   const auto point = detail::settle_width(bench, wide, marked, floor, {.torsion = *torsion, .below = below});
   const auto &wide_fit = found.fit, &point_fit = point.fit;
   const double best = found.model.half_delay_s;

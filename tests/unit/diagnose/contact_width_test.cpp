@@ -24,3 +24,12 @@ TEST_CASE("contact width: of five places, some of which slide on now and then wh
   CHECK(std::abs(width.value / width_m - 1) < 0.1);
   CHECK(std::abs(width.value - width_m) < 2 * width.sd);
 }
+
+TEST_CASE("contact width: and torsion that nobody declared, each of which hides the other") {
+  constexpr double width_m = 3e-3;
+  const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), {6, 3.4, 27}, 81, 0.2, 0.06, 0.3e-3, width_m, 5);
+  rosin::stick_bench bench({a.take()}, {});
+  const auto h = rosin::width_hypothesis(bench, {a.take()});
+  REQUIRE(h);
+  CHECK(std::abs(h->parameters[0].value / width_m - 1) < 0.1);
+}
