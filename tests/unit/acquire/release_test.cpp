@@ -17,7 +17,7 @@ TEST_CASE("the release arrives as a step of the breaking force, at each end in i
     const auto far = rosin::find_release_step(x[1], p.rate_Hz, p.fundamental_Hz);
     REQUIRE(near);
     REQUIRE(far);
-    CHECK(near->height == test::approx(-1).epsilon(0.15));
+    CHECK(near->height == test::approx(-1).epsilon(0.12));
     CHECK(far->height == test::approx(-1).epsilon(0.15));
     const double near_s = p.release_s + position / (2 * p.fundamental_Hz),
                  far_s = p.release_s + (1 - position) / (2 * p.fundamental_Hz);
