@@ -220,6 +220,8 @@
 #include <rosin/diagnose/scene_lines.hpp>
 #include <rosin/diagnose/scene_plucks.hpp>
 #include <rosin/diagnose/sensor_chain.hpp>
+#include <rosin/diagnose/slip_bench.hpp>
+#include <rosin/diagnose/slip_record.hpp>
 #include <rosin/diagnose/stick_columns.hpp>
 #include <rosin/diagnose/stick_design.hpp>
 #include <rosin/diagnose/stretching_pluck.hpp>

@@ -11,113 +11,9 @@
 //
 #pragma once
 
-#include <rosin/diagnose/contact_ripple.hpp>
-#include <rosin/diagnose/friction_laws.hpp>
-
-#include <optional>
+#include <rosin/diagnose/slip_bench.hpp>
 
 namespace rosin {
-
-/// Slips of all takes, and the law as declared fitted to them.
-class slip_bench {
-public:
-  slip_bench(stick_bench& sticks, const std::vector<contact_take>& takes)
-      : records_{slip_records(sticks, takes)}, pitches_{pitches_of(sticks)} {
-    std::size_t samples = 0;
-    for (std::size_t t = 0; t < records_.size(); ++t) {
-      samples += records_[t].slips.sample.size();
-      noise_ = std::max(noise_, 0.6 * takes[t].force_sd_N / takes[t].normal_force_N);
-      level_sd_ = std::max(level_sd_, takes[t].level_sd_N / takes[t].normal_force_N);
-    }
-    usable_ = samples > 400 && std::all_of(records_.begin(), records_.end(),
-                                           [](const auto& r) { return r.slips.sample.size() > 100 && r.normal_N > 0; });
-    if (!usable_) return;
-    ripple_Hz_ = sticks.model().normal_ripple_Hz;
-    if (const auto& known = sticks.model().heat) heat_ = {.layer_m = (*known)[0], .area_per_newton_m2 = (*known)[1]};
-    declared_ = fit(sticks.model().law == contact_law::thermal);
-  }
-
-  [[nodiscard]] bool usable() const noexcept { return usable_; }
-  /// What imperfect models leave of a coefficient of friction, or noise does; and what of it two laws may be told apart by.
-  [[nodiscard]] double floor() const noexcept { return std::max(0.003, noise_); }
-  [[nodiscard]] double least_floor() const noexcept { return std::max(0.001, noise_); }
-  [[nodiscard]] const std::vector<slip_record>& records() const noexcept { return records_; }
-  [[nodiscard]] const law_fit& declared() const noexcept { return declared_; }
-  [[nodiscard]] const std::vector<stroke_pitch>& pitches() const noexcept { return pitches_; }
-  /// Of the mean friction coefficient, where sensors lost the force's mean.
-  [[nodiscard]] double level_sd() const noexcept { return level_sd_; }
-  /// The thermal law or the curve along the motion. What a known ripple of the normal force does to the force is taken out with
-  /// the law itself.
-  [[nodiscard]] law_fit fit(bool thermal) const {
-    law_fit law = fit_to(records_, thermal && !ripple_Hz_);
-    if (!ripple_Hz_) return law;
-    std::vector<slip_record> steady = records_;
-    for (int round = thermal ? 0 : 1; round < 3; ++round) {  // heat is sought once the curve has taken the most of the ripple out
-      take_out_tone(law, *ripple_Hz_, steady);
-      law = fit_to(steady, thermal);
-    }
-    return law;
-  }
-
-  /// Friction as the declared law has it, at the rows of a take.
-  [[nodiscard]] Eigen::VectorXd predicted(std::size_t take) const {
-    return declared_.design.rows[take].target - declared_.fit.solution.residual[take];
-  }
-  /// Adds a tone of N to a design of the declared law.
-  void add_tone(stick_design& d, double f) const {
-    for (std::size_t t = 0; t < records_.size(); ++t)
-      for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
-        auto& rows = d.rows[t];
-        const Eigen::VectorXd mu = predicted(t);
-        const Eigen::Index c = rows.own.cols();
-        rows.own.conservativeResize(rows.target.size(), c + 1);
-        for (Eigen::Index i = 0; i < mu.size(); ++i)
-          rows.own(i, c) =
-              mu[i] * std::sin(2 * std::numbers::pi * f * static_cast<double>(rows.sample[static_cast<std::size_t>(i)]) /
-                                   records_[t].rate_Hz +
-                               turn);
-      }
-  }
-
-private:
-  /// Where the mean force was lost, strokes may be off against the first by a constant.
-  [[nodiscard]] law_fit fit_to(const std::vector<slip_record>& records, bool thermal) const {
-    law_fit law = !thermal ? fit_velocity_curve(records, floor())
-                  : heat_  ? fit_memory(records, floor(), *heat_)
-                           : fit_thermal(records, floor());
-    if (!(level_sd_ > 0)) return law;
-    detail::free_levels(law.design);
-    law.fit = fit_design(law.design, floor());
-    return law;
-  }
-  /// Divides the force of each take by 1 + the tone that the law leaves in it.
-  static void take_out_tone(const law_fit& law, double f, std::vector<slip_record>& records) {
-    for (std::size_t t = 0; t < records.size(); ++t) {
-      const auto& rows = law.design.rows[t];
-      const auto& left = law.fit.solution.residual[t];
-      const tone_rows take{left, rows.target - left, detail::student_row_factors(left, law.residual()), rows.sample,
-                           records[t].rate_Hz};
-      std::complex<double> relative =
-          detail::sums_at(take, f, 0, rows.sample.size() - static_cast<std::size_t>(rows.shared.cols() - 2)).solve();
-      if (constexpr double most = 0.8; std::abs(relative) > most) relative *= most / std::abs(relative);
-      const auto steady = [&](std::size_t i) {
-        return 1 /
-               (1 + (relative * std::polar(1.0, 2 * std::numbers::pi * f * static_cast<double>(i) / records[t].rate_Hz)).imag());
-      };
-      for (std::size_t i = 0; i < records[t].force_N.size(); ++i) records[t].force_N[i] *= steady(i);
-      for (Eigen::Index k = 0; k < records[t].slips.friction.size(); ++k)
-        records[t].slips.friction[k] *= steady(records[t].slips.sample[static_cast<std::size_t>(k)]);
-    }
-  }
-
-  std::vector<slip_record> records_;
-  std::vector<stroke_pitch> pitches_;
-  double noise_ = 0, level_sd_ = 0;
-  bool usable_ = false;
-  std::optional<double> ripple_Hz_;
-  std::optional<contact_heat_parameters<double>> heat_;
-  law_fit declared_{};
-};
 
 namespace detail {
 
@@ -175,8 +71,11 @@ inline void settle_hypothesis(const law_fit& declared, const design_fit& fit, co
   h.held_out_gain = std::min(h.held_out_gain, predicted);
   h.held_out_density = h.held_out_gain / h.share;
   double size = 0;
-  for (const auto& own : fit.solution.own)
-    size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
+  if (constexpr double worth_it = 20; h.gain > worth_it)
+    size = bench.fit_under(tone.frequency_Hz, bench.declared().law == contact_law::thermal).size();
+  else
+    for (const auto& own : fit.solution.own)
+      size += std::hypot(own[own.size() - 2], own[own.size() - 1]) / static_cast<double>(takes.size());
   h.parameters[0].sd = std::hypot(h.parameters[0].sd, contact_faults::slip_tone * tone.frequency_Hz);  // seen once a period only
   h.parameters[1].value = size;
   double mu = 0;

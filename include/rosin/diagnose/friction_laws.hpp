@@ -15,18 +15,9 @@
 //
 #pragma once
 
-#include <rosin/diagnose/contact_stick.hpp>
-#include <rosin/friction/slip_samples.hpp>
+#include <rosin/diagnose/slip_record.hpp>
 
 namespace rosin {
-
-/// The slips of one take with all that drives a law.
-struct slip_record {
-  std::vector<double> force_N, relative_m_s;  ///< smoothed; surface less rod
-  contact_phases phases;
-  slip_samples slips;
-  double normal_N = 0, rate_Hz = 0;
-};
 
 struct thermal_rates {
   double conduction_1_s = 300, renewal = 0, exchange_1_m = 3000, capacity_power = 0;  ///< a, b, c, p
@@ -44,29 +35,6 @@ struct law_fit {
   [[nodiscard]] double residual() const noexcept { return fit.solution.scale; }
 };
 
-/// Smoothed force and motion of each take and their slips, a few samples clear of sticking.
-[[nodiscard]] inline std::vector<slip_record> slip_records(stick_bench& bench, const std::vector<contact_take>& takes) {
-  std::vector<slip_record> out;
-  for (std::size_t t = 0; t < bench.records().size(); ++t) {
-    auto& record = bench.records()[t];
-    slip_record r{record.force_through([](double) { return 1.0; }),
-                  bench.relative_m_s()[t],
-                  {},
-                  {},
-                  takes[t].normal_force_N,
-                  takes[t].rate_Hz};
-    const std::size_t begin = record.begin();
-    r.phases = find_phases(std::span(r.relative_m_s).subspan(0, record.end()).subspan(begin), takes[t].rod_speed_m_s,
-                           {.least = 0.1, .most = 0.5, .fluctuations = 5});
-    for (auto* list : {&r.phases.sticks, &r.phases.slips})
-      for (auto& s : *list) s.begin += begin, s.end += begin;
-    for (std::size_t margin = record.reach() - 1; margin + 3 > record.reach() && r.slips.sample.size() < 600; --margin)
-      r.slips = slips_of(r.force_N, r.relative_m_s, r.phases, takes[t].rod_speed_m_s, takes[t].normal_force_N, begin, margin);
-    out.push_back(std::move(r));
-  }
-  return out;
-}
-
 namespace detail {
 
 [[nodiscard]] inline std::vector<double> one_temperature(const slip_record& r, const std::vector<char>& slipping,
@@ -80,7 +48,8 @@ namespace detail {
     const double v = std::abs(r.relative_m_s[i] - r.phases.level_m_s),
                  rate = k.conduction_1_s + k.renewal * std::sqrt(v) + k.exchange_1_m * v;
     const double x = rate * step, keep = std::exp(-x);
-    return now = now * keep + scale * v * std::abs(r.force_N[i]) * (x > 1e-9 ? (1 - keep) / rate : step);
+    const double force_N = std::abs(r.force_N[i]) / (r.load.empty() ? 1 : r.load[i]);  // the contact grows with its load
+    return now = now * keep + scale * v * force_N * (x > 1e-9 ? (1 - keep) / rate : step);
   };
   const auto [first, last] = before_the_slips(r.phases, rise.size());
   for (std::size_t i = first; i < last; ++i) advance(i);
@@ -171,7 +140,13 @@ inline void free_levels(stick_design& d) {
 }
 
 [[nodiscard]] inline std::vector<double> heat_along(const slip_record& r, const contact_heat_parameters<double>& heat) {
-  return temperature_along(r.force_N, r.relative_m_s, r.phases, r.normal_N, r.rate_Hz, heat);
+  return temperature_along(r.force_N, r.relative_m_s, r.phases, r.normal_N, r.rate_Hz, heat, r.load);
+}
+
+[[nodiscard]] inline std::vector<std::vector<char>> slipping_in(const std::vector<slip_record>& records) {
+  std::vector<std::vector<char>> out;
+  for (const auto& r : records) out.push_back(interior(r.phases.slips, r.relative_m_s.size(), 0));
+  return out;
 }
 
 template <class Memory>
@@ -179,6 +154,12 @@ template <class Memory>
   std::vector<Eigen::VectorXd> x;
   for (std::size_t t = 0; t < records.size(); ++t) x.push_back(before_slips(records[t], memory(t)));
   return law_design(records, x, stride);
+}
+[[nodiscard]] inline stick_design rates_design(const std::vector<slip_record>& records,
+                                               const std::vector<std::vector<char>>& slipping, const thermal_rates& rates,
+                                               std::size_t stride) {
+  return memory_design(
+      records, [&](std::size_t t) { return one_temperature(records[t], slipping[t], rates); }, stride);
 }
 
 }  // namespace detail
@@ -204,24 +185,33 @@ template <class Memory>
   return out;
 }
 
-[[nodiscard]] inline law_fit fit_thermal(const std::vector<slip_record>& records, double floor) {
-  std::vector<std::vector<char>> slipping;
-  std::size_t samples = 0;
-  for (const auto& r : records)
-    slipping.push_back(interior(r.phases.slips, r.relative_m_s.size(), 0)), samples += r.slips.sample.size();
-  const std::size_t stride = std::max<std::size_t>(2, samples / 6000);
-  const auto design = [&](const thermal_rates& k, std::size_t every) {
-    return detail::memory_design(
-        records, [&](std::size_t t) { return detail::one_temperature(records[t], slipping[t], k); }, every);
-  };
+/// A contact of one temperature whose rates are known.
+[[nodiscard]] inline law_fit fit_rates(const std::vector<slip_record>& records, double floor, const thermal_rates& rates) {
   law_fit out;
-  out.law = contact_law::thermal;
+  out.law = contact_law::thermal, out.rates = rates;
+  out.design = detail::rates_design(records, detail::slipping_in(records), rates, 2);
+  out.fit = fit_design(out.design, floor);
+  return out;
+}
+
+/// A law that was found, on other forces along the same motion: its memory is kept.
+[[nodiscard]] inline law_fit fit_again(const std::vector<slip_record>& records, double floor, const law_fit& found) {
+  if (found.law != contact_law::thermal) return fit_velocity_curve(records, floor);
+  return found.heat_memory ? fit_memory(records, floor, found.heat) : fit_rates(records, floor, found.rates);
+}
+
+[[nodiscard]] inline law_fit fit_thermal(const std::vector<slip_record>& records, double floor) {
+  const auto slipping = detail::slipping_in(records);
+  std::size_t samples = 0;
+  for (const auto& r : records) samples += r.slips.sample.size();
+  const std::size_t stride = std::max<std::size_t>(2, samples / 6000);
+  law_fit out;
   double best = 1e300;
   const auto attempt = [&](thermal_rates k) {
     if (!(k.conduction_1_s + k.renewal + k.exchange_1_m > 0) || k.conduction_1_s > 5e3 || k.renewal > 1e4 ||
         k.exchange_1_m > 1.2e4)
       return 1e300;
-    const double r = detail::quick_residual(design(k, stride));
+    const double r = detail::quick_residual(detail::rates_design(records, slipping, k, stride));
     if (r < best) best = r, out.rates = k;
     return r;
   };
@@ -280,9 +270,7 @@ template <class Memory>
         if (!(best_memory < 0.999 * before)) break;
       }
   if (best_memory < best) return fit_memory(records, floor, found);
-  out.design = design(out.rates, 2);
-  out.fit = fit_design(out.design, floor);
-  return out;
+  return fit_rates(records, floor, out.rates);
 }
 
 }  // namespace rosin

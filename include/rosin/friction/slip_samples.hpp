@@ -56,16 +56,17 @@ struct slip_samples {
 }
 
 /// Temperature of the contact at every sample (above its surroundings), heated by the reconstructed force along the reconstructed
-/// slips.
+/// slips. `load`: normal force over `normal_N` at every sample; empty: it is steady.
 [[nodiscard]] inline std::vector<double> temperature_along(std::span<const double> force_N, std::span<const double> relative_m_s,
                                                            const contact_phases& phases, double normal_N, double rate_Hz,
-                                                           const contact_heat_parameters<double>& heat) {
+                                                           const contact_heat_parameters<double>& heat,
+                                                           std::span<const double> load = {}) {
   std::vector<double> rise(relative_m_s.size(), 0.0);
   const auto slipping = interior(phases.slips, relative_m_s.size(), 0);
   contact_heat<double> contact(heat);
   const auto step = [&](std::size_t i) {
     const double slip = slipping[i] ? std::abs(relative_m_s[i] - phases.level_m_s) : 0.0;
-    return contact(slip * std::abs(force_N[i]), slip, normal_N, 1 / rate_Hz);
+    return contact(slip * std::abs(force_N[i]), slip, load.empty() ? normal_N : load[i] * normal_N, 1 / rate_Hz);
   };
   const auto [first, last] = before_the_slips(phases, rise.size());
   for (std::size_t i = first; i < last; ++i) step(i);

@@ -36,6 +36,19 @@ TEST_CASE("slip samples: the contact warms while it slips and cools while it sti
   CHECK(rise[699] < energy / capacity);
 }
 
+TEST_CASE("slip samples: the contact grows with its load") {
+  std::vector<double> force(2000, 0.15), relative(2000, 0.0), load(2000, 1.0);
+  for (std::size_t i = 500; i < 700; ++i) relative[i] = -0.6;
+  const auto phases = rosin::find_phases(relative, 0.2);
+  const auto steady = rosin::temperature_along(force, relative, phases, 0.3, 128e3, {});
+  CHECK(rosin::temperature_along(force, relative, phases, 0.3, 128e3, {}, load) == steady);
+  const std::vector<double> half(2000, 0.5);
+  CHECK(rosin::temperature_along(force, relative, phases, 0.6, 128e3, {}, half) == steady);
+  std::fill(load.begin() + 600, load.end(), 1.5);
+  const auto pressed = rosin::temperature_along(force, relative, phases, 0.3, 128e3, {}, load);
+  CHECK(pressed[699] < 0.9 * steady[699]);
+}
+
 TEST_CASE("smooth functions: a partition of one that follows curves of friction") {
   std::vector<double> x;
   for (int i = 0; i < 3000; ++i) x.push_back(1.5 * std::pow(i / 3000.0, 2));
