@@ -112,6 +112,7 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
   };
   e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout, const Eigen::VectorXd& v,
                double axial_N) {
+    const ringing_string slack = relaxed(scene.string, raised(layout, v, 0, axial_N));  // as other effects make it, at rest
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate,
                    newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
@@ -121,7 +122,7 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
       const std::size_t count =
           std::min(takes[t].force_N[0].size() - first, static_cast<std::size_t>(horizon_s * rate * 1.1) + 8);
       const band all{limits.stop_Hz, limits.stop_Hz};
-      const ringing_string slack = layout.string(v), mean = tightened(slack, raised(layout, v, t, axial_N));
+      const ringing_string mean = tightened(slack, raised(layout, v, t, axial_N));
       const double wait_s = std::min(1.0, static_cast<double>(first) - released) / rate;
       // half of them or twice as many: the same within 0.002 of what is taken out
       const auto steps = static_cast<std::size_t>(std::ceil(120e3 / rate));
@@ -166,7 +167,7 @@ inline pluck_effect phantom_partials_effect(const string_facts& f, const band& l
       const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate,
                    newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
       const auto first = std::min(size, static_cast<std::size_t>(std::max(0.0, std::ceil(released))));
-      const nearest_pinned pinned(scene, layout.string(v));
+      const nearest_pinned pinned(scene, scene.string);
       const stretching_pluck string(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension,
                                     {limits.stop_Hz, limits.stop_Hz}, 120, {scene.detuning, scene.coupling});
       const std::vector<double> strain =

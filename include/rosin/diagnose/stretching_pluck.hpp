@@ -154,5 +154,9 @@ private:
   string.inharmonicity /= 1 + relative;
   return string;
 }
+/// The string that was tightened so.
+[[nodiscard]] inline ringing_string relaxed(const ringing_string& string, double relative) {
+  return tightened(string, 1 / (1 + relative) - 1);
+}
 
 }  // namespace rosin

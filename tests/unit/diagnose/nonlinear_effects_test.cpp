@@ -74,12 +74,47 @@ TEST_CASE("what stretching puts in is taken out: larger with the square of the p
     Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
     v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002,
     v[layout.at(0, 1)] = std::log(newtons);
-    e.undo(takes, {}, layout, v, 1e4);
+    rosin::pluck_scene scene;
+    scene.string = layout.string(v);
+    e.undo(takes, scene, layout, v, 1e4);
     double power = 0;
     for (std::size_t i = 300; i < 900; ++i) power += std::pow(takes[0].force_N[0][i], 2);
     return std::sqrt(power) / newtons;
   };
   CHECK(change(0.2) / change(0.1) == test::approx(4).epsilon(0.05));
+}
+
+TEST_CASE("what stretching puts in is that of the string as other effects make it: stiff, damped") {
+  std::vector<rosin::pluck_take> none(1);
+  none[0].rate_Hz = 128e3, none[0].position = 0.17;
+  none[0].force_N = {std::vector<double>(2000, 0.0), std::vector<double>(2000, 0.0)};
+  const rosin::pluck_layout layout(none, {});
+  Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
+  v[0] = 659.69, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.17, v[layout.at(0, 0)] = 0.002,
+  v[layout.at(0, 1)] = std::log(0.8);
+  Eigen::VectorXd declared = v;
+  declared[1] = 6.49e-5;
+  const auto apart = [&](const rosin::pluck_effect& e, double value) {
+    const auto taken_out = [&](const Eigen::VectorXd& known, double inharmonicity) {
+      auto takes = none;
+      rosin::pluck_scene scene;
+      scene.string = layout.string(known), scene.string.inharmonicity = inharmonicity;
+      e.undo(takes, scene, layout, known, value);
+      return takes[0].force_N[1];
+    };
+    const auto known = taken_out(declared, 6.49e-5), effect = taken_out(v, 6.49e-5), flexible = taken_out(v, 0);
+    double off = 0, ignored = 0, all = 0;
+    for (std::size_t i = 0; i < known.size(); ++i)
+      off += std::pow(effect[i] - known[i], 2), ignored += std::pow(flexible[i] - known[i], 2), all += std::pow(known[i], 2);
+    return std::array{std::sqrt(off / all), std::sqrt(ignored / all)};
+  };
+  // what the stretched string is set against is tuned by the mean tension of the declared one
+  const auto stretching = apart(rosin::tension_modulation_effect(facts, limits), 1e4),
+             phantoms = apart(rosin::phantom_partials_effect(facts, limits, 1), 5e3);
+  CHECK(stretching[0] < 0.1);
+  CHECK(stretching[1] > 0.3);
+  CHECK(phantoms[0] < 1e-9);
+  CHECK(phantoms[1] > 0.01);
 }
 
 TEST_CASE("what a sensor feels of the tension is taken out, before the release and after") {
@@ -91,7 +126,9 @@ TEST_CASE("what a sensor feels of the tension is taken out, before the release a
   Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
   v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002,
   v[layout.at(0, 1)] = std::log(0.8);
-  e.undo(takes, {}, layout, v, 5e3);
+  rosin::pluck_scene scene;
+  scene.string = layout.string(v);
+  e.undo(takes, scene, layout, v, 5e3);
   const auto& far = takes[0].force_N[1];
   const double tension = facts.impedance_Ns_m * 2 * facts.length_m * facts.fundamental_Hz,
                held = 0.5 * 0.3 * 0.7 * std::pow(0.8 / tension, 2) * 5e3;
@@ -150,7 +187,8 @@ TEST_CASE("stretching as the channels record it: behind a high-pass, late, leaki
   Eigen::VectorXd v = Eigen::VectorXd::Zero(layout.size());
   v[0] = 659.69, v[1] = 6.49e-5, v[2] = 1.0 / 900, v[5] = -1, v[layout.position(0)] = 0.3, v[layout.at(0, 0)] = 0.002,
   v[layout.at(0, 1)] = std::log(0.8);
-  const auto taken_out = [&](const rosin::pluck_scene& scene) {
+  const auto taken_out = [&](rosin::pluck_scene scene) {
+    scene.string = layout.string(v);
     std::vector<rosin::pluck_take> takes{take};
     e.undo(takes, scene, layout, v, 1e4);
     return takes[0].force_N;
