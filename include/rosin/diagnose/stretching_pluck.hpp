@@ -6,7 +6,10 @@
 //     q_n'' + (w_n / Q) q_n' + [w_n^2 + e(t) (c k_n)^2] q_n = 0,    e = EA / (2 L T) integral y'^2 dx = EA / (4 T) sum (k_n q_n)^2
 //
 // (Kirchhoff; Carrier 1945), stepped: each mode turns exactly through half a step, is kicked by the tension, and turns on
-// (Strang). Motion across the plane of the pluck stretches it as well, and feels the same tension.
+// (Strang). Motion across the plane of the pluck stretches it as well, and feels the same tension. A damper at x_d, of resistance
+// R, slows all modes at once by what it does in a step alone,
+//
+//     d/dt (k_n q_n)' = -4 (R / Z) f_1 n sin(n pi x_d) sum (k_m q_m)' sin(m pi x_d) / m.
 //
 #pragma once
 
@@ -26,13 +29,18 @@ struct second_plane {
   double detuning = 0, coupling = 0;  ///< the latter tan(angle of the pluck) tan(angle of the sensors)
 };
 
+/// Something on the string that resists its motion.
+struct damping_place {
+  double position = 0.5, resistance = 0;  ///< fraction of the length; R / Z
+};
+
 /// Forces on both ends of a plucked string whose tension follows its length.
 class stretching_pluck {
 public:
   /// Partials to `most` below the stop frequency, seen through the band. Both planes have one tension: of the square of the
   /// motion a share c / (1 + c) is across, c = |coupling|, as if the angles of pluck and sensors were alike.
   stretching_pluck(const ringing_string& string, double position, double force_over_tension, const band& limits, int most,
-                   second_plane other = {})
+                   second_plane other = {}, const std::vector<damping_place>& dampers = {})
       : force_{force_over_tension} {
     const double c = other.coupling, across = std::abs(c) / (1 + std::abs(c));
     ringing_string second = string;
@@ -43,6 +51,10 @@ public:
       x->resize(first_count + second_count);
     put(string, position, limits, 0, first_count, 1 / (1 + c), 1 - across);
     put(second, position, limits, first_count, second_count, c / (1 + c), across);
+    for (const damping_place& d : dampers) {
+      slow_down(d, string.fundamental_Hz, 0, first_count);
+      if (second_count > 0) slow_down(d, second.fundamental_Hz, first_count, second_count);
+    }
   }
 
   /// Forces on {near, far}, relative to the pluck's own: `count` values, the first `first_s` after the release (in [0,
@@ -104,6 +116,16 @@ private:
       decay_1_s_[i] = w * half, turn_rad_s_[i] = w * std::sqrt(1 - half * half);
     }
   }
+  /// Of one plane's partials, from `first` on.
+  void slow_down(const damping_place& d, double fundamental_Hz, int first, int count) {
+    slowed s{Eigen::ArrayXd::Zero(held_.size()), Eigen::ArrayXd::Zero(held_.size()), 4 * d.resistance * fundamental_Hz, 0};
+    for (int n = 1; n <= count; ++n) {
+      const double there = std::sin(n * std::numbers::pi * d.position);
+      s.push[first + n - 1] = n * there, s.feel[first + n - 1] = there / n;
+    }
+    s.all = (s.push * s.feel).sum();
+    if (s.all > 0) slowed_.push_back(std::move(s));
+  }
   /// Sum of (k q)^2.
   [[nodiscard]] double squared(const Eigen::ArrayXd& q) const { return (share_ * q.square()).sum(); }
 
@@ -127,10 +149,18 @@ private:
             double step_s) const {
     turn(q, p, scratch);
     p -= stretch * squared(q) * step_s * kick_ * q;
+    for (const slowed& s : slowed_) p -= (-std::expm1(-s.rate_1_s * s.all * step_s) / s.all * (s.feel * p).sum()) * s.push;
     turn(q, p, scratch);
   }
 
+  /// What a damper does by itself: p' = -rate push (feel . p); `all` is push . feel.
+  struct slowed {
+    Eigen::ArrayXd push, feel;
+    double rate_1_s = 0, all = 0;
+  };
+
   double force_;
+  std::vector<slowed> slowed_;
   Eigen::ArrayXd held_, kick_, stiff_, weight_, share_, sign_, decay_1_s_, turn_rad_s_;  ///< mode by mode
 };
 
