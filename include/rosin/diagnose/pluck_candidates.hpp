@@ -91,20 +91,22 @@ inline std::vector<pluck_effect> with_one_more(std::vector<pluck_effect> effects
   return effects;
 }
 
-/// An effect whose model holds for a short time only stays if it is the best over that time.
-inline void prefer_over_one_horizon(const scene_data& data, std::vector<scene_fit>& fits, std::array<double, 2> noise) {
+/// An effect whose model holds for a short time only stays if over that time it is the best, and worth anything.
+inline void prefer_over_one_horizon(const scene_data& data, const scene_fit& already, std::vector<scene_fit>& fits,
+                                    std::array<double, 2> noise) {
   const auto brief = std::find_if(fits.begin(), fits.end(), [](const scene_fit& f) { return f.horizon_periods < 1e8; });
   if (brief == fits.end()) return;
+  constexpr double worth_anything = 28, apart = 6;
   const double cost = cost_of(*brief, noise);
-  for (const scene_fit& f : fits) {
-    if (f.horizon_periods < 1e8) continue;
-    const scene_fit other = fit_scene(data, f.effects, f.value, {{1000, brief->horizon_periods, true, data.compared()}}, noise);
-    if (cost_of(other, noise) < cost + 6) {
-      fits.erase(brief);
-      return;
-    }
-  }
-  std::rotate(fits.begin(), brief, brief + 1);
+  const auto is_no_better = [&](const scene_fit& than, double by) {
+    const scene_fit other =
+        fit_scene(data, than.effects, than.value, {{1000, brief->horizon_periods, true, data.compared()}}, noise);
+    return cost_of(other, noise) < cost + by;
+  };
+  bool goes = already.horizon_periods >= 1e8 && is_no_better(already, worth_anything);
+  for (auto f = fits.begin(); !goes && f != fits.end(); ++f) goes = f->horizon_periods >= 1e8 && is_no_better(*f, apart);
+  if (goes) fits.erase(brief);
+  else std::rotate(fits.begin(), brief, brief + 1);
 }
 
 /// Where to begin, effect by effect, and which effects are worth a fit.
@@ -264,7 +266,7 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
   std::sort(fits.begin(), fits.end(), better);
   if (!fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek)
     fits.front() = detail::rewound(data, std::move(fits.front()), noise);
-  detail::prefer_over_one_horizon(data, fits, noise);
+  detail::prefer_over_one_horizon(data, already, fits, noise);
   return fits;
 }
 

@@ -41,12 +41,15 @@ inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<plu
   constexpr double beyond_doubt = 200, least = 3;
   while (!held.empty() && !d.best.effects.empty() && d.found_gain[d.best.effects.size() - 1] < beyond_doubt &&
          held_out_gain(d.data, d.best, held, noise) < least) {
-    const double horizon = d.best.horizon_periods;
+    const bool was_brief = d.best.effects.back().horizon_periods < 1e8;  // what is left holds for as long as was declared
     const scene_fit less = without(d.data, d.best, d.best.effects.size() - 1);
+    const double horizon =
+        was_brief ? std::min(d.declared.horizon_periods, d.data.most_periods_with(less.effects)) : d.best.horizon_periods;
     d.best = fit_scene(d.data, less.effects, less.value, {{1000, horizon, true, freedom::all}}, {noise, noise});
     d.found_gain.resize(d.best.effects.size());
     d.alternatives.clear();
   }
+  if (d.best.effects.empty()) d.base = d.best;
   d.mismatched = d.mismatched && !d.best.effects.empty();
 }
 

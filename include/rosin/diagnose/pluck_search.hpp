@@ -181,7 +181,10 @@ private:
     if (round == 0) rank(before);
     // Linear parameters of which there are many (hum) gain half a unit each from noise alone.
     const double chance = std::max(0, static_cast<int>(tried.effects.back().parameters.size()) - 3);
-    if (!(c.gain > 14 + 0.5 * chance + 2 * std::sqrt(chance))) return false;
+    if (!(c.gain > 14 + 0.5 * chance + 2 * std::sqrt(chance))) {
+      if (round == 0 && before.horizon_periods < now_.horizon_periods) leave_alone();  // looked at no longer than it was tried
+      return false;
+    }
     constexpr double half_way = 2.0 / 3;  // of two that leave a ninth the better leaves no more by itself
     if (!worth) return round == 1 && c.left < half_way * c.was && add_with_another(fits, c);
     accept(fits, c);

@@ -57,6 +57,15 @@ void check_stretching_and_leakage(const rosin::string_parameters& string, double
 
 }  // namespace
 
+TEST_CASE("an effect whose model holds for the first periods only, and that nothing speaks for, leaves a string as declared") {
+  const auto d = look_for({"tension-modulation"}, test::plucked_rig, {}, 0.3, 0, true);
+  REQUIRE_MESSAGE(d, d.error());
+  CHECK_FALSE(d->mismatched);
+  CHECK(d->explained);
+  CHECK(d->best.effects.empty());
+  CHECK_FALSE(d->best.falls_short());
+}
+
 TEST_CASE("a string that its own motion stretches is found behind a high-pass, which hides how much of the mismatch is left" *
           doctest::test_suite("long")) {
   const rosin::modal_rig rig{.string = {.length_m = 0.3073,
