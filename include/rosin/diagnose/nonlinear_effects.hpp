@@ -113,6 +113,17 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
   e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout, const Eigen::VectorXd& v,
                double axial_N) {
     const ringing_string slack = relaxed(scene.string, raised(layout, v, 0, axial_N));  // as other effects make it, at rest
+    const nearest_pinned pinned(scene, slack);
+    std::vector<string_load> loads;
+    for (const scatterer& s : scene.scatterers)
+      loads.push_back({pinned.place(s.position), s.resistance, std::max(0.0, s.mass_s)});
+    const band all{limits.stop_Hz, limits.stop_Hz};
+    const second_plane other{scene.detuning, scene.coupling};
+    stretching_pluck string(pinned.string, 0.5, 1, all, 400, other, loads);
+    const auto mean_pluck = [&](std::size_t t, double newtons) {
+      const nearest_pinned mean(scene, tightened(slack, raised(layout, v, t, axial_N)));
+      return stretching_pluck(mean.string, mean.place(v[layout.position(t)]), newtons / tension, all, 400, other);
+    };
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate,
                    newtons = std::exp(v[layout.at(t, pluck_layout::strength)]);
@@ -121,22 +132,13 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
       if (first >= takes[t].force_N[0].size()) continue;
       const std::size_t count =
           std::min(takes[t].force_N[0].size() - first, static_cast<std::size_t>(horizon_s * rate * 1.1) + 8);
-      const band all{limits.stop_Hz, limits.stop_Hz};
-      const ringing_string mean = tightened(slack, raised(layout, v, t, axial_N));
       const double wait_s = std::min(1.0, static_cast<double>(first) - released) / rate;
       // of what the hardest plucks have taken out right within 0.02, of all that they are within 3e-4
       const auto steps = static_cast<std::size_t>(std::ceil(120e3 / rate));
-      const auto run = [&](const ringing_string& string, double stretch) {
-        const nearest_pinned pinned(scene, string);
-        std::vector<damping_place> dampers;
-        for (const scatterer& s : scene.scatterers)
-          if (s.resistance > 0) dampers.push_back({pinned.place(s.position), s.resistance});
-        return stretching_pluck(pinned.string, pinned.place(v[layout.position(t)]), newtons / tension, all, 400,
-                                {scene.detuning, scene.coupling}, dampers)
-            .run(stretch, wait_s, 1 / rate, stretch > 0 || !dampers.empty() ? steps : 1, count);
-      };
-      auto excess = run(slack, axial_N / (4 * tension));
-      const auto plain = run(mean, 0);
+      string.pluck_at(pinned.place(v[layout.position(t)]), newtons / tension);
+      auto excess = string.run(axial_N / (4 * tension), wait_s, 1 / rate, steps, count);
+      const auto plain = loads.empty() ? mean_pluck(t, newtons).run(0, wait_s, 1 / rate, 1, count)
+                                       : string.run(0, wait_s, 1 / rate, steps, count, raised(layout, v, t, axial_N));
       // a channel may have it before the string
       const double early_s = std::max({0.0, -scene.sensors[0].delay_s, -scene.sensors[1].delay_s});
       const std::size_t lead = std::min(first, static_cast<std::size_t>(std::ceil(early_s * rate)));

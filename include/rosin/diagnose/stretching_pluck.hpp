@@ -11,14 +11,19 @@
 //
 //     d/dt (k_n q_n)' = -4 (R / Z) f_1 n sin(n pi x_d) sum (k_m q_m)' sin(m pi x_d) / m.
 //
+// A mass M makes other modes of the string, combinations v of those without it; each is stiffened by v^T n^2 v in place of n^2.
+// (What stretching moves from one to another is too little to show.)
+//
 #pragma once
 
 #include <rosin/calibrate/pluck_model.hpp>
 
-#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -29,9 +34,9 @@ struct second_plane {
   double detuning = 0, coupling = 0;  ///< the latter tan(angle of the pluck) tan(angle of the sensors)
 };
 
-/// Something on the string that resists its motion.
-struct damping_place {
-  double position = 0.5, resistance = 0;  ///< fraction of the length; R / Z
+/// Something on the string that resists its motion, or is heavy.
+struct string_load {
+  double position = 0.5, resistance = 0, mass_s = 0;  ///< fraction of the length; R / Z; M / Z
 };
 
 /// Forces on both ends of a plucked string whose tension follows its length.
@@ -40,42 +45,43 @@ public:
   /// Partials to `most` below the stop frequency, seen through the band. Both planes have one tension: of the square of the
   /// motion a share c / (1 + c) is across, c = |coupling|, as if the angles of pluck and sensors were alike.
   stretching_pluck(const ringing_string& string, double position, double force_over_tension, const band& limits, int most,
-                   second_plane other = {}, const std::vector<damping_place>& dampers = {})
-      : force_{force_over_tension} {
+                   second_plane other = {}, const std::vector<string_load>& loads = {}) {
     const double c = other.coupling, across = std::abs(c) / (1 + std::abs(c));
     ringing_string second = string;
     second.fundamental_Hz *= 1 + other.detuning, second.inharmonicity /= std::pow(1 + other.detuning, 2);
-    const int first_count = partials_of(string, limits.stop_Hz, most),
-              second_count = c != 0 ? partials_of(second, limits.stop_Hz, most) : 0;
-    for (Eigen::ArrayXd* x : {&held_, &kick_, &stiff_, &weight_, &share_, &sign_, &decay_1_s_, &turn_rad_s_})
-      x->resize(first_count + second_count);
-    put(string, position, limits, 0, first_count, 1 / (1 + c), 1 - across);
-    put(second, position, limits, first_count, second_count, c / (1 + c), across);
-    for (const damping_place& d : dampers) {
-      slow_down(d, string.fundamental_Hz, 0, first_count);
-      if (second_count > 0) slow_down(d, second.fundamental_Hz, first_count, second_count);
+    add(string, loads, limits, most, 1 / (1 + c), 1 - across);
+    if (c != 0) add(second, loads, limits, most, c / (1 + c), across);
+    for (slowed& s : slowed_)
+      for (Eigen::ArrayXd* x : {&s.push, &s.feel}) append(*x, Eigen::ArrayXd::Zero(kick_.size() - x->size()));
+    pluck_at(position, force_over_tension);
+  }
+
+  /// The same string, plucked elsewhere or with another force.
+  void pluck_at(double position, double force_over_tension) {
+    force_ = force_over_tension;
+    held_.resize(0);
+    for (const plane_basis& m : planes_) {
+      const Eigen::ArrayXd pi_n = std::numbers::pi * numbers(m.partials);
+      // Slope amplitude k q of the held string: 2 F sin(k x) / (L k (T + B k^2)) -> (2 / (n pi)) (F/T) sin / (1 + b)
+      append(held_, 2 / pi_n * (position * pi_n).sin());
     }
   }
 
   /// Forces on {near, far}, relative to the pluck's own: `count` values, the first `first_s` after the release (in [0,
   /// sample_s]), then every sample_s, each reached in `steps` steps. stretch: EA / (4 T), dimensionless with k q in units of
-  /// slope.
+  /// slope; raised: what else the tension is higher by, relatively.
   [[nodiscard]] std::array<std::vector<double>, 2> run(double stretch, double first_s, double sample_s, std::size_t steps,
-                                                       std::size_t count) const {
-    Eigen::ArrayXd q, p = Eigen::ArrayXd::Zero(held_.size()), scratch;
-    double e = 0;
-    for (int i = 0; i < 8; ++i) {  // the held string is stretched as well
-      q = force_ * held_ * stiff_ / (stiff_ + e);
-      e = stretch * squared(q);
-    }
+                                                       std::size_t count, double raised = 0) const {
+    Eigen::ArrayXd q = held(raised), p = Eigen::ArrayXd::Zero(q.size()), scratch;
+    for (int i = 0; stretch > 0 && i < 8; ++i) q = held(raised + stretch * squared(q));  // the held string is stretched as well
     std::array<std::vector<double>, 2> out{std::vector<double>(count), std::vector<double>(count)};
     const double first_step_s = first_s / static_cast<double>(steps), step_s = sample_s / static_cast<double>(steps);
     const half_turn first_turn = half_turn_in(first_step_s), turn = half_turn_in(step_s);
-    for (std::size_t k = 0; k < steps; ++k) step(q, p, scratch, first_turn, stretch, first_step_s);
+    for (std::size_t k = 0; k < steps; ++k) step(q, p, scratch, first_turn, stretch, raised, first_step_s);
     for (std::size_t i = 0; i < count; ++i) {
-      scratch = weight_ * (stiff_ + stretch * squared(q)) * q;
-      out[0][i] = scratch.sum() / force_, out[1][i] = (sign_ * scratch).sum() / force_;
-      for (std::size_t k = 0; k < steps; ++k) step(q, p, scratch, turn, stretch, step_s);
+      const double e = raised + (stretch > 0 ? stretch * squared(q) : 0);
+      for (std::size_t c = 0; c < 2; ++c) out[c][i] = ((heard_[c] + e * heard_of_stretch_[c]) * q).sum() / force_;
+      for (std::size_t k = 0; k < steps; ++k) step(q, p, scratch, turn, stretch, raised, step_s);
     }
     return out;
   }
@@ -83,7 +89,7 @@ public:
   /// The string's mean strain (1 / 2L) integral y'^2 dx where its tension stays as it is, at the same instants.
   [[nodiscard]] std::vector<double> unstretched_strain(double first_s, double sample_s, std::size_t count) const {
     const half_turn begin = half_turn_in(2 * first_s), turn = half_turn_in(2 * sample_s);
-    Eigen::ArrayXd q = force_ * held_, p = Eigen::ArrayXd::Zero(held_.size()), scratch;
+    Eigen::ArrayXd q = held(0), p = Eigen::ArrayXd::Zero(q.size()), scratch;
     begin(q, p, scratch);
     std::vector<double> out(count);
     for (double& strain : out) {
@@ -94,37 +100,105 @@ public:
   }
 
   /// Mean strain of the held string.
-  [[nodiscard]] double held_strain() const { return squared(force_ * held_) / 4; }
+  [[nodiscard]] double held_strain() const { return squared(held(0)) / 4; }
 
 private:
-  [[nodiscard]] static int partials_of(const ringing_string& string, double stop_Hz, int most) {
+  /// One plane as the string moves in it: modes, as combinations v of the partials that a string without masses has.
+  struct plane {
+    Eigen::ArrayXd frequency_Hz, stiffened;  ///< of each mode; v^T n^2 v
+    Eigen::MatrixXd shapes;                  ///< v, column by column
+    Eigen::MatrixXd to_modes;                ///< from displacements; empty without masses
+  };
+  /// Masses hang on what partials beyond the highest one give way by, as on springs.
+  [[nodiscard]] static plane plane_of(const ringing_string& string, const std::vector<string_load>& loads, double stop_Hz,
+                                      int most) {
+    std::vector<string_load> masses;
+    std::copy_if(loads.begin(), loads.end(), std::back_inserter(masses), [](const string_load& l) { return l.mass_s > 0; });
     int count = 0;
-    while (count < most && string.partial_Hz(count + 1) < stop_Hz) ++count;
-    return count;
+    const double highest_Hz = masses.empty() ? stop_Hz : 1.3 * stop_Hz;
+    while (count < most && string.partial_Hz(count + 1) < highest_Hz) ++count;
+    plane out;
+    const auto squares = [&](const Eigen::ArrayXd& n) {
+      return Eigen::ArrayXd(n.square() * (1 + string.inharmonicity * n.square()));  // of frequencies, in fundamentals
+    };
+    const Eigen::ArrayXd n = numbers(count), w2 = squares(n);
+    out.frequency_Hz = string.fundamental_Hz * w2.sqrt(), out.stiffened = n.square();
+    out.shapes = Eigen::MatrixXd::Identity(count, count);
+    if (masses.empty()) return out;
+    const auto heavy = static_cast<Eigen::Index>(masses.size());
+    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(count + heavy, count + heavy), inertia = stiffness,
+                    at_rest = Eigen::MatrixXd::Identity(count + heavy, count);
+    stiffness.diagonal().head(count) = w2, inertia.diagonal().head(count).setOnes();
+    const Eigen::ArrayXd beyond = numbers(50 * count).tail(49 * count), beyond2 = squares(beyond);
+    for (Eigen::Index m = 0; m < heavy; ++m) {
+      const string_load& l = masses[static_cast<std::size_t>(m)];
+      const auto shape = [&](const Eigen::ArrayXd& k) { return Eigen::ArrayXd((k * std::numbers::pi * l.position).sin()); };
+      const double spring = 1 / (shape(beyond).square() / beyond2).sum();
+      Eigen::VectorXd stretch = Eigen::VectorXd::Zero(count + heavy);
+      stretch.head(count) = shape(n).matrix(), stretch[count + m] = -1;
+      stiffness += spring * stretch * stretch.transpose();
+      inertia(count + m, count + m) = 4 * string.fundamental_Hz * l.mass_s;
+      at_rest.row(count + m) = shape(n).matrix().transpose();
+    }
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness, inertia);
+    const Eigen::ArrayXd f = string.fundamental_Hz * modes.eigenvalues().cwiseMax(0).cwiseSqrt().array();
+    const Eigen::Index kept = (f < stop_Hz).count();
+    out.frequency_Hz = f.head(kept), out.shapes = modes.eigenvectors().topLeftCorner(count, kept);
+    out.stiffened = (out.shapes.array().square().colwise() * n.square()).colwise().sum().transpose();
+    out.to_modes = modes.eigenvectors().leftCols(kept).transpose() * inertia * at_rest;
+    return out;
   }
-
-  /// Partials of one plane, from `first` on: how much of them is heard, and their share of the motion's square.
-  void put(const ringing_string& string, double position, const band& limits, int first, int count, double heard, double share) {
-    for (int n = 1; n <= count; ++n) {
-      const int i = first + n - 1;
-      const double f = string.partial_Hz(n), w = 2 * std::numbers::pi * f, half = string.loss.inverse_q(f) / 2;
-      const double c_k = 2 * std::numbers::pi * string.fundamental_Hz * n, b = string.inharmonicity * n * n;
-      // Slope amplitude k q of the held string: 2 F sin(k x) / (L k (T + B k^2)) -> (2 / (n pi)) (F/T) sin / (1 + b)
-      held_[i] = 2 / (n * std::numbers::pi) * std::sin(n * std::numbers::pi * position) / (1 + b);
-      kick_[i] = c_k * c_k, stiff_[i] = 1 + b, weight_[i] = heard * band_weight(limits, {-w * half, w}).real(), share_[i] = share,
-      sign_[i] = n % 2 ? 1 : -1;
-      decay_1_s_[i] = w * half, turn_rad_s_[i] = w * std::sqrt(1 - half * half);
+  [[nodiscard]] static Eigen::ArrayXd numbers(Eigen::Index count) {
+    return Eigen::ArrayXd::LinSpaced(count, 1, static_cast<double>(count));
+  }
+  static void append(Eigen::ArrayXd& to, const Eigen::ArrayXd& more) {
+    to.conservativeResize(to.size() + more.size());
+    to.tail(more.size()) = more;
+  }
+  /// How much of one plane's modes is heard, and their share of the motion's square.
+  void add(const ringing_string& string, const std::vector<string_load>& loads, const band& limits, int most, double heard,
+           double share) {
+    const plane modes = plane_of(string, loads, limits.stop_Hz, most);
+    const Eigen::Index partials = modes.shapes.rows(), count = modes.shapes.cols(), first = kick_.size();
+    const Eigen::ArrayXd n = numbers(partials), pi_n = std::numbers::pi * n, stiff = 1 + string.inharmonicity * n.square();
+    append(stiff_, stiff);
+    const Eigen::ArrayXd size = modes.stiffened.sqrt();  // of a mode in units of slope
+    const Eigen::MatrixXd slopes = (n.matrix().asDiagonal() * modes.shapes * (1 / size).matrix().asDiagonal()).eval();
+    planes_.push_back({partials, {}});
+    if (modes.to_modes.size() > 0)
+      planes_.back().to_modes = size.matrix().asDiagonal() * modes.to_modes * (1 / n).matrix().asDiagonal();
+    Eigen::ArrayXd weight(count), decay(count), turn(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const double f = modes.frequency_Hz[k], w = 2 * std::numbers::pi * f, half = string.loss.inverse_q(f) / 2;
+      weight[k] = heard * band_weight(limits, {-w * half, w}).real(), decay[k] = w * half,
+      turn[k] = w * std::sqrt(1 - half * half);
+    }
+    append(decay_1_s_, decay), append(turn_rad_s_, turn), append(share_, Eigen::ArrayXd::Constant(count, share));
+    append(kick_, std::pow(2 * std::numbers::pi * string.fundamental_Hz, 2) * modes.stiffened);
+    for (std::size_t c = 0; c < 2; ++c) {
+      const Eigen::ArrayXd sign = c == 0 ? Eigen::ArrayXd::Ones(partials) : Eigen::ArrayXd(-(pi_n.cos()));
+      append(heard_[c], weight * (slopes.transpose() * (sign * stiff).matrix()).array());
+      append(heard_of_stretch_[c], weight * (slopes.transpose() * sign.matrix()).array());
+    }
+    for (const string_load& l : loads) {
+      const Eigen::ArrayXd there = (modes.shapes.transpose() * (l.position * pi_n).sin().matrix()).array();
+      slowed s{Eigen::ArrayXd::Zero(first), Eigen::ArrayXd::Zero(first), 4 * l.resistance * string.fundamental_Hz,
+               there.square().sum()};
+      append(s.push, size * there), append(s.feel, there / size);
+      if (l.resistance > 0 && s.all > 0) slowed_.push_back(std::move(s));
     }
   }
-  /// Of one plane's partials, from `first` on.
-  void slow_down(const damping_place& d, double fundamental_Hz, int first, int count) {
-    slowed s{Eigen::ArrayXd::Zero(held_.size()), Eigen::ArrayXd::Zero(held_.size()), 4 * d.resistance * fundamental_Hz, 0};
-    for (int n = 1; n <= count; ++n) {
-      const double there = std::sin(n * std::numbers::pi * d.position);
-      s.push[first + n - 1] = n * there, s.feel[first + n - 1] = there / n;
+  /// Of the held string, in modes, as a rise e of its tension leaves it.
+  [[nodiscard]] Eigen::ArrayXd held(double e) const {
+    const Eigen::ArrayXd slopes = force_ * held_ / (stiff_ + e);
+    Eigen::ArrayXd out;
+    Eigen::Index at = 0;
+    for (const plane_basis& m : planes_) {
+      const Eigen::ArrayXd here = slopes.segment(at, m.partials);
+      append(out, m.to_modes.size() > 0 ? Eigen::ArrayXd(m.to_modes * here.matrix()) : here);
+      at += m.partials;
     }
-    s.all = (s.push * s.feel).sum();
-    if (s.all > 0) slowed_.push_back(std::move(s));
+    return out;
   }
   /// Sum of (k q)^2.
   [[nodiscard]] double squared(const Eigen::ArrayXd& q) const { return (share_ * q.square()).sum(); }
@@ -145,10 +219,10 @@ private:
             decay * (c - decay_1_s_ * s)};
   }
 
-  void step(Eigen::ArrayXd& q, Eigen::ArrayXd& p, Eigen::ArrayXd& scratch, const half_turn& turn, double stretch,
+  void step(Eigen::ArrayXd& q, Eigen::ArrayXd& p, Eigen::ArrayXd& scratch, const half_turn& turn, double stretch, double raised,
             double step_s) const {
     turn(q, p, scratch);
-    p -= stretch * squared(q) * step_s * kick_ * q;
+    p -= (raised + stretch * squared(q)) * step_s * kick_ * q;
     for (const slowed& s : slowed_) p -= (-std::expm1(-s.rate_1_s * s.all * step_s) / s.all * (s.feel * p).sum()) * s.push;
     turn(q, p, scratch);
   }
@@ -159,9 +233,17 @@ private:
     double rate_1_s = 0, all = 0;
   };
 
-  double force_;
+  struct plane_basis {
+    Eigen::Index partials = 0;
+    Eigen::MatrixXd to_modes;  ///< empty: the partials are the modes
+  };
+
+  double force_ = 0;
+  std::vector<plane_basis> planes_;
   std::vector<slowed> slowed_;
-  Eigen::ArrayXd held_, kick_, stiff_, weight_, share_, sign_, decay_1_s_, turn_rad_s_;  ///< mode by mode
+  Eigen::ArrayXd held_, stiff_;                             ///< partial by partial
+  Eigen::ArrayXd kick_, share_, decay_1_s_, turn_rad_s_;    ///< mode by mode
+  std::array<Eigen::ArrayXd, 2> heard_, heard_of_stretch_;  ///< per end, of a mode and of e times it
 };
 
 /// What the tension of a plucked string is higher by in the mean over the first periods, relatively: half of e is there in the

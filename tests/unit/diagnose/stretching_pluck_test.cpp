@@ -115,10 +115,10 @@ public:
     for (std::size_t i = 0; i < without.size(); ++i) true_change_[i] -= without[i];
   }
   [[nodiscard]] double impedance_Ns_m() const { return rig_.string.impedance_Ns_m(); }
-  [[nodiscard]] double off(rosin::second_plane other, const std::vector<rosin::damping_place>& dampers) const {
+  [[nodiscard]] double off(rosin::second_plane other, const std::vector<rosin::string_load>& loads) const {
     const auto& s = rig_.string;
     const double b = std::pow(std::numbers::pi / s.length_m, 2) * s.bending_stiffness_Nm2 / s.tension_N;
-    const rosin::stretching_pluck pluck({567, b, s.loss, -1}, 0.2, force_N / s.tension_N, {63e3, 63e3}, 200, other, dampers);
+    const rosin::stretching_pluck pluck({567, b, s.loss, -1}, 0.2, force_N / s.tension_N, {63e3, 63e3}, 200, other, loads);
     const auto stretched = pluck.run(axial_N / (4 * s.tension_N), 0, 1 / rate, 1, count)[0],
                slack = pluck.run(0, 0, 1 / rate, 1, count)[0];
     const auto low_pass = settings_.low_pass();
@@ -159,4 +159,13 @@ TEST_CASE("what stretching changes where a damper sits on the string, against mo
   const against_modes truth(burden);
   CHECK(truth.off({}, {{position, resistance_Ns_m / truth.impedance_Ns_m()}}) < 0.005);
   CHECK(truth.off({}, {}) > 0.03);
+}
+
+TEST_CASE("what stretching changes where a bead sits on the string, against modes that are stepped with their tension") {
+  constexpr double position = 0.73, mass_kg = 5e-6;
+  rosin::rig_burden burden;
+  burden.string.loads.push_back({.position = position, .mass_kg = mass_kg});
+  const against_modes truth(burden);
+  CHECK(truth.off({}, {{position, 0, mass_kg / truth.impedance_Ns_m()}}) < 0.02);
+  CHECK(truth.off({}, {}) > 0.5);
 }
