@@ -57,7 +57,8 @@ void check_stretching_and_leakage(const rosin::string_parameters& string, double
 
 }  // namespace
 
-TEST_CASE("an effect whose model holds for the first periods only, and that nothing speaks for, leaves a string as declared") {
+TEST_CASE("an effect whose model holds for the first periods only, and that nothing speaks for, leaves a string as declared" *
+          doctest::test_suite("long")) {
   const auto d = look_for({"tension-modulation"}, test::plucked_rig, {}, 0.3, 0, true);
   REQUIRE_MESSAGE(d, d.error());
   CHECK_FALSE(d->mismatched);
