@@ -133,7 +133,7 @@ private:
     for (Eigen::Index m = 0; m < heavy; ++m) {
       const string_load& l = masses[static_cast<std::size_t>(m)];
       const auto shape = [&](const Eigen::ArrayXd& k) { return Eigen::ArrayXd((k * std::numbers::pi * l.position).sin()); };
-      const double spring = 1 / (shape(beyond).square() / beyond2).sum();
+      const double spring = 1 / std::max(1e-9, (shape(beyond).square() / beyond2).sum());  // near an end hardly any give way
       Eigen::VectorXd stretch = Eigen::VectorXd::Zero(count + heavy);
       stretch.head(count) = shape(n).matrix(), stretch[count + m] = -1;
       stiffness += spring * stretch * stretch.transpose();
