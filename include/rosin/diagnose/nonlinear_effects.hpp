@@ -137,6 +137,7 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
       const auto steps = static_cast<std::size_t>(std::ceil(120e3 / rate));
       string.pluck_at(pinned.place(v[layout.position(t)]), newtons / tension);
       auto excess = string.run(axial_N / (4 * tension), wait_s, 1 / rate, steps, count);
+      // the mean tension exactly, as the scene has it; where loads make it be stepped, by the same steps
       const auto plain = loads.empty() ? mean_pluck(t, newtons).run(0, wait_s, 1 / rate, 1, count)
                                        : string.run(0, wait_s, 1 / rate, steps, count, raised(layout, v, t, axial_N));
       // a channel may have it before the string

@@ -163,7 +163,7 @@ private:
     const Eigen::ArrayXd n = numbers(partials), pi_n = std::numbers::pi * n, stiff = 1 + string.inharmonicity * n.square();
     append(stiff_, stiff);
     const Eigen::ArrayXd size = modes.stiffened.sqrt();  // of a mode in units of slope
-    const Eigen::MatrixXd slopes = (n.matrix().asDiagonal() * modes.shapes * (1 / size).matrix().asDiagonal()).eval();
+    const Eigen::MatrixXd slopes = n.matrix().asDiagonal() * modes.shapes * (1 / size).matrix().asDiagonal();
     planes_.push_back({partials, {}});
     if (modes.to_modes.size() > 0)
       planes_.back().to_modes = size.matrix().asDiagonal() * modes.to_modes * (1 / n).matrix().asDiagonal();
