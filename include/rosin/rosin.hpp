@@ -109,6 +109,7 @@
 #include <rosin/reconstruct/uncertainty.hpp>
 
 #include <rosin/torsion/contact_signal.hpp>
+#include <rosin/torsion/rod_approach.hpp>
 #include <rosin/torsion/stick_data.hpp>
 #include <rosin/torsion/stick_regression.hpp>
 #include <rosin/torsion/torsion_fit.hpp>
@@ -222,6 +223,7 @@
 #include <rosin/diagnose/sensor_chain.hpp>
 #include <rosin/diagnose/slip_bench.hpp>
 #include <rosin/diagnose/slip_record.hpp>
+#include <rosin/diagnose/slow_noise.hpp>
 #include <rosin/diagnose/stick_columns.hpp>
 #include <rosin/diagnose/stick_design.hpp>
 #include <rosin/diagnose/stretching_pluck.hpp>

@@ -27,6 +27,13 @@ struct tone_fit {
   std::vector<std::complex<double>> relative;  ///< of each take: sine part, cosine part
   double size = 0, size_sd = 0;                ///< of `relative`, over all takes
   double explained = 0;                        ///< sum of weighted squares that go
+  double around = 0;                           ///< the same, median of frequencies nearby
+
+  /// Among its neighbours: noise that is not white has a strongest frequency as well.
+  [[nodiscard]] bool stands_out() const noexcept {
+    constexpr double nats = 14;  // of one take alone; where several have it, chance has it less
+    return explained > around * (1 + nats / static_cast<double>(std::max<std::size_t>(1, relative.size())));
+  }
 };
 
 namespace detail {
@@ -134,6 +141,14 @@ namespace detail {
     weights += w, sum += w * std::abs(best.relative.back());
   }
   best.size = weights > 0 ? sum / weights : 0;
+  std::vector<double> nearby;
+  for (double aside = 2 / length; aside < 8 / length; aside += 2 * step)
+    for (const double f : {best.frequency_Hz - aside, best.frequency_Hz + aside})
+      if (allowed(f)) nearby.push_back(detail::explained_at(coarse, f));
+  if (nearby.empty()) return best;
+  const auto middle = nearby.begin() + static_cast<std::ptrdiff_t>(nearby.size() / 2);
+  std::nth_element(nearby.begin(), middle, nearby.end());
+  best.around = *middle;
   return best;
 }
 
@@ -186,7 +201,7 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
   h.parameters = {{"frequency_Hz", tone.frequency_Hz, tone.frequency_sd_Hz},
                   {"relative", tone.size, std::hypot(tone.size_sd, contact_faults::ripple * tone.size)}};
   h.free_parameters = 1 + 2 * static_cast<int>(takes.size());
-  h.decided = tone.size > 4 * tone.size_sd;
+  h.decided = tone.size > 4 * tone.size_sd && tone.stands_out();
 }
 
 }  // namespace detail

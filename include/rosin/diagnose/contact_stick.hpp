@@ -24,7 +24,7 @@ public:
     std::vector<stick_take> out;
     for (const auto& t : takes)
       out.push_back({t.force_N, t.velocity_m_s, t.rate_Hz, t.rod_speed_m_s, t.delay_s, t.impedance_Ns_m, t.velocity_sd_m_s,
-                     t.edge_Hz, t.start_s});
+                     t.edge_Hz, t.start_s, t.approach});
     return out;
   }
 
@@ -37,7 +37,7 @@ public:
     free_ = fit_torsion(stick_takes(takes), model.torsion);
     mark();
     declare();
-    if (usable() && model.speed_ripple_Hz) follow_ripple();
+    if (usable()) follow_rod();
   }
 
   /// Makes the declared equation anew with this convention of damping.
@@ -78,7 +78,7 @@ public:
       for (auto& column : shared)
         for (double& v : column) v = -v;
       const auto which = d.rows.size();
-      d.rows.push_back(pick(marked_[which], target, shared, {std::vector<double>(target.size(), 1.0)}));
+      d.rows.push_back(pick(marked_[which], target, shared, record.rod_columns()));
     }
     d.add_bound(-4, 1.5);
     d.add_bound(-1.5, 1.5);
@@ -207,13 +207,14 @@ private:
     if (model_.speed_ripple_Hz) add_rod_tone(d, *model_.speed_ripple_Hz);
   }
 
-  /// The ripple that was found is the rod's, while the string slips as well.
-  void follow_ripple() {
+  /// What was found of the rod's motion - its approach, its ripple - is the rod's, while the string slips as well.
+  void follow_rod() {
     for (std::size_t t = 0; t < records_.size(); ++t) {
-      const Eigen::VectorXd& own = fit_.solution.own[t];
-      for (std::size_t k = 0; k < 2; ++k)
-        detail::add_to(relative_[t], rod_wave(records_[t], *model_.speed_ripple_Hz, quarter_turns[k]),
-                       -own[own.size() - 2 + static_cast<Eigen::Index>(k)]);
+      auto columns = records_[t].rod_columns();
+      if (model_.speed_ripple_Hz)
+        for (const double turn : quarter_turns) columns.push_back(rod_wave(records_[t], *model_.speed_ripple_Hz, turn));
+      for (std::size_t k = 1; k < columns.size(); ++k)
+        detail::add_to(relative_[t], columns[k], -fit_.solution.own[t][static_cast<Eigen::Index>(k)]);
     }
   }
 

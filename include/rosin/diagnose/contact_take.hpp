@@ -39,7 +39,17 @@ struct contact_take {
   double level_sd_N = 0;                         ///< of the force's mean, where AC-coupled sensors lost it; 0: known
   double edge_Hz = 0;                            ///< where the reconstruction's band ends; 0: 0.45 of the rate
   double start_s = 0.03;                         ///< until the stroke is steady
+  rod_approach approach{};                       ///< to that speed, where it is slower still
 };
+
+/// Finds how a stroke's rod approaches its speed, and until when too much of that is missing to count; nothing changes where the rod
+/// is as fast as declared by start_s.
+inline void follow_start(contact_take& t) {
+  constexpr double missing = 0.1;
+  const double period_s = 2 * (t.delay_s[0] + t.delay_s[1]);
+  t.approach = find_rod_approach(t.velocity_m_s, t.rate_Hz, period_s, t.rod_speed_m_s, t.start_s);
+  t.start_s = std::max(t.start_s, t.approach.within_s(missing));
+}
 
 enum class contact_law { velocity_curve, thermal, elasto_plastic };
 

@@ -130,7 +130,7 @@ struct width_model {
       for (auto& column : shared[place])
         for (double& x : column) x = -x;
       const auto& target = place == 0 ? here.near_m_s : here.far_m_s;
-      d.rows.push_back(pick(marked[t], target, shared[place], {std::vector<double>(target.size(), 1.0)}));
+      d.rows.push_back(pick(marked[t], target, shared[place], bench.records()[t].rod_columns()));
     }
   }
   for (int k = 0; k < 2; ++k) d.add_bound(-30, 30);

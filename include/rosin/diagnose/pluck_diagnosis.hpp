@@ -10,6 +10,7 @@
 #include <rosin/diagnose/clock_drift_effect.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/pluck_search.hpp>
+#include <rosin/diagnose/slow_noise.hpp>
 #include <rosin/diagnose/sympathetic_effect.hpp>
 
 #include <tuple>
@@ -28,33 +29,52 @@ namespace detail {
   return std::move(fit->plucks);
 }
 
-}  // namespace detail
+/// Effects that the declared model, as it was fitted, does not contain.
+using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_result&)>;
 
-/// `catalogue_for`: effects that the declared model does not contain. Takes in `held` are predicted only.
-[[nodiscard]] inline outcome<pluck_diagnosis> diagnose_plucks(
-    const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
-    const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
-    int most_effects = 3) {
-  auto declared = detail::fit_declared(takes, guess, options);
+/// Of recordings as they are.
+[[nodiscard]] inline outcome<pluck_diagnosis> diagnose_as_recorded(const std::vector<pluck_take>& takes,
+                                                                   const std::vector<pluck_take>& held, const pluck_guess& guess,
+                                                                   const pluck_options& options, const effects_for& catalogue_for,
+                                                                   int most_effects, double least_temper = 1) {
+  auto declared = fit_declared(takes, guess, options);
   if (!declared) return failure{declared.error()};
   const pluck_layout layout(takes, options, guess.ends);
   pluck_diagnosis d{{takes, guess, options, layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
+  d.data.least_temper = least_temper;
   d.declared.layout = layout;
   d.declared.value.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size())),
       d.declared.sd.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size()));
   d.declared.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(layout.size(), layout.size()));
   double least_noise = 0;
-  std::tie(d, least_noise) = detail::searched(d, catalogue_for(*declared), most_effects);
-  detail::drop_what_is_not_predicted(d, held, least_noise);
-  const detail::seen_noise still = detail::noise_before_release(d.data, d.best);
-  const bool modulated = detail::is_noisier(d.best.quality.noise, still);
-  const double noise = modulated ? detail::rms_of(still.rms_N) : least_noise;
-  d.mismatch = detail::locate(d.data, d.base, noise);
+  std::tie(d, least_noise) = searched(d, catalogue_for(*declared), most_effects);
+  drop_what_is_not_predicted(d, held, least_noise);
+  const seen_noise still = noise_before_release(d.data, d.best);
+  const bool modulated = is_noisier(d.best.quality.noise, still);
+  const double noise = modulated ? rms_of(still.rms_N) : least_noise;
+  d.mismatch = locate(d.data, d.base, noise);
   const auto& judged = held.empty() ? takes : held;
-  detail::judge(d, judged, noise, still.samples > 0, modulated);
-  if (d.mismatched) detail::judge_ranking(d, judged, noise);
+  judge(d, judged, noise, still.samples > 0, modulated);
+  if (d.mismatched) judge_ranking(d, judged, noise);
   if (!d.explained) d.mismatch.place = place_of_residual(d.data, d.best, d.mismatch.take);
   return d;
+}
+
+}  // namespace detail
+
+/// `catalogue_for`: effects that the declared model does not contain. Takes in `held` are predicted only. Where the recordings have
+/// noise that is slow (slow_noise.hpp), they are looked at again without it.
+[[nodiscard]] inline outcome<pluck_diagnosis> diagnose_plucks(const std::vector<pluck_take>& takes,
+                                                              const std::vector<pluck_take>& held, const pluck_guess& guess,
+                                                              const pluck_options& options,
+                                                              const detail::effects_for& catalogue_for, int most_effects = 3) {
+  auto d = detail::diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects);
+  if (!d || !d->mismatched) return d;
+  const auto cleaned = without_slow_noise(*d, held);
+  if (!cleaned) return d;
+  auto again =
+      detail::diagnose_as_recorded(cleaned->takes, cleaned->held, guess, options, catalogue_for, most_effects, cleaned->over);
+  return again ? again : d;
 }
 
 /// The catalogue without what the declared model already contains.

@@ -129,7 +129,7 @@ private:
   }
   [[nodiscard]] comparison compare(const scene_fit& before, const scene_fit& tried) const {
     comparison c;
-    c.temper = std::max(1.0, tried.quality.inflation());
+    c.temper = std::max(d_.data.least_temper, tried.quality.inflation());
     c.samples = tried.quality.samples[0] + tried.quality.samples[1];
     const double without = cost_of(before, noise_), with = cost_of(tried, noise_);
     c.gain = 0.5 * (without - with) / c.temper;
@@ -142,7 +142,7 @@ private:
     const auto samples = [](const scene_fit& f) { return std::max(1.0, f.quality.samples[0] + f.quality.samples[1]); };
     const auto there = [&](const pluck_hypothesis& h) { return h.ids == ids_of(d_.best); };
     if (std::none_of(d_.ranking.begin(), d_.ranking.end(), there)) rank(d_.best);
-    const double n = samples(d_.best), temper = std::max(1.0, d_.best.quality.inflation());
+    const double n = samples(d_.best), temper = std::max(d_.data.least_temper, d_.best.quality.inflation());
     for (auto& h : d_.ranking)
       h.log_evidence = -0.5 * cost_of(h.fit, noise_) * n / (samples(h.fit) * temper) - 0.5 * free_parameters(h.fit) * std::log(n);
   }

@@ -44,6 +44,7 @@ struct scene_data {
   pluck_layout layout;
   band_kernels kernels{};
   double most_periods = 1e9;  ///< of each recording that any fit looks at
+  double least_temper = 1;    ///< power of the noise at the first partials over white noise: evidence weighs that much less
 
   /// The same of a fit with these effects, whose own models may hold for less.
   [[nodiscard]] double most_periods_with(const std::vector<pluck_effect>& effects) const {

@@ -3,12 +3,14 @@
 //
 // Bowed takes of one rig, reconstructed, seen while the string sticks. Everything that is linear in the force (torsion, a rod
 // that gives way, bristles that bend) becomes a column of samples; whatever else moves the surface is a column too. Of each
-// record its middle is used: the stroke's start, in which the rod gathers speed, is left out.
+// record its middle is used: the stroke's start, in which the rod gathers speed, is left out; what the rod still lacks then
+// (rod_approach.hpp) is the rod's.
 //
 #pragma once
 
 #include <rosin/friction/slip_phases.hpp>
 #include <rosin/torsion/contact_signal.hpp>
+#include <rosin/torsion/rod_approach.hpp>
 #include <rosin/torsion/stick_regression.hpp>
 
 #include <array>
@@ -25,7 +27,8 @@ struct stick_take {
   double impedance_Ns_m = 0;        ///< transverse
   double velocity_sd_m_s = 0;       ///< noise of the reconstruction
   double edge_Hz = 0;               ///< where the reconstruction's band ends; 0: 0.45 of the rate
-  double start_s = 0.03;            ///< left out at the beginning, a quarter of the record at most
+  double start_s = 0.03;            ///< left out at the beginning, a quarter of the record at most (half where the rod lags)
+  rod_approach approach{};          ///< to the rod's speed
 
   /// Through which it is seen while it sticks.
   [[nodiscard]] smooth_window window() const noexcept { return {edge_Hz > 0 ? edge_Hz : 0.45 * rate_Hz}; }
@@ -58,12 +61,27 @@ public:
       : take_{take}, begin_{first(take)}, force_{known(take.force_N), take.rate_Hz, usual_memory_s} {
     contact_signal<> velocity{known(take.velocity_m_s), take.rate_Hz};
     relative_ = velocity.through(window(), [](double) { return 1.0; });
-    for (double& v : relative_) v -= take.rod_speed_m_s;
+    for (std::size_t i = 0; i < relative_.size(); ++i) relative_[i] -= rod_speed_m_s(i);
+  }
+
+  /// Of the rod, at a known sample.
+  [[nodiscard]] double rod_speed_m_s(std::size_t i) const noexcept {
+    return take_.rod_speed_m_s * (1 - take_.approach.lag(static_cast<double>(begin_ + i) / take_.rate_Hz));
+  }
+  /// What a take has of its own while it sticks: a level; and where its rod approaches its speed, the errors of that.
+  [[nodiscard]] std::vector<std::vector<double>> rod_columns() const {
+    std::vector<std::vector<double>> out(take_.approach.seen() ? 3 : 1, std::vector<double>(relative_.size(), 1.0));
+    if (!take_.approach.seen()) return out;
+    for (std::size_t i = 0; i < relative_.size(); ++i) {
+      const double u = (static_cast<double>(i) - static_cast<double>(begin())) / (take_.rate_Hz * take_.approach.time_s);
+      out[1][i] = std::exp(-std::max(0.0, u)), out[2][i] = u * out[1][i];
+    }
+    return out;
   }
 
   /// Known samples that count: all but the start and a reach of the window at the end.
   [[nodiscard]] std::size_t begin() const noexcept {
-    return std::min(relative_.size() / 4, static_cast<std::size_t>(take_.start_s * take_.rate_Hz));
+    return std::min(relative_.size() / (take_.approach.seen() ? 2 : 4), static_cast<std::size_t>(take_.start_s * take_.rate_Hz));
   }
   [[nodiscard]] std::size_t end() const noexcept { return relative_.size() - std::min(relative_.size(), reach()); }
   /// Index in the take's own arrays of the first known sample.

@@ -128,6 +128,7 @@ struct torsion_state {
   part.force_N = record.known(record.take().force_N).subspan(from, to - from);
   part.velocity_m_s = record.known(record.take().velocity_m_s).subspan(from, to - from);
   part.start_s = static_cast<double>(begin - from) / part.rate_Hz;
+  part.approach = part.approach.from(static_cast<double>(record.origin() + from) / part.rate_Hz);
   return part;
 }
 
@@ -182,7 +183,7 @@ inline void torsion_step(std::vector<stick_record>& records, torsion_state& stat
     const auto marked = sticking_samples(record, surface, {.most = most});
     for (auto& column : shared)
       for (double& v : column) v = -v;
-    rows.push_back(pick(marked, base, shared, {std::vector<double>(base.size(), 1.0)}));
+    rows.push_back(pick(marked, base, shared, record.rod_columns()));
   }
   double total = 0;
   for (const auto& r : rows) total += static_cast<double>(r.target.size());

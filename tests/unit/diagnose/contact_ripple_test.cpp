@@ -41,6 +41,29 @@ TEST_CASE("ripple: a tone in patches, its frequency and size, and that it lasts"
   CHECK(rosin::tone_prediction(takes, tone.frequency_Hz) > 0.7 * tone.explained);
 }
 
+TEST_CASE("ripple: the strongest frequency of noise that is not white does not stand out, a tone in it does") {
+  int named = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::vector<rosin::tone_rows> takes{patches(0, 97.3, 0.01, seed), patches(0, 97.3, 0.01, seed + 50)}, toned = takes;
+    std::mt19937 source(seed + 100);
+    std::normal_distribution<double> normal;
+    for (std::size_t t = 0; t < 2; ++t) {
+      double now = 0;
+      std::size_t at = 0;
+      for (std::size_t k = 0; k < takes[t].sample.size(); ++k) {
+        for (; at <= takes[t].sample[k]; ++at) now += 0.1 * (0.1 * normal(source) - now);  // below 170 Hz
+        const auto i = static_cast<Eigen::Index>(k);
+        takes[t].residual[i] += now;
+        toned[t].residual[i] =
+            takes[t].residual[i] + 0.03 * std::sin(2 * std::numbers::pi * 97.3 * static_cast<double>(takes[t].sample[k]) / 10e3);
+      }
+    }
+    named += rosin::find_tone(takes).stands_out() ? 1 : 0;
+    CHECK(rosin::find_tone(toned).stands_out());
+  }
+  CHECK(named <= 2);
+}
+
 TEST_CASE("ripple: noise alone predicts nothing") {
   const std::vector<rosin::tone_rows> takes{patches(0, 97.3, 0.1, 3), patches(0, 97.3, 0.1, 4)};
   const auto tone = rosin::find_tone(takes);

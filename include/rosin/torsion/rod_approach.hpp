@@ -1,0 +1,120 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// A stroke that starts from rest: how its rod reaches the speed that is declared, told by the motion alone. For most of every
+// period the string sticks to the rod, so that the median of the velocity over a period is the rod's, but for a constant. What is
+// fitted to these medians is the approach of a carriage that is held back by drag, and of a servo,
+//
+//     v(t) = v (1 - share e^(-t / time)),
+//
+// by Cauchy's likelihood, which bears the periods in which the string does not stick; every time on a grid, share and level by least
+// squares. A rod that is as fast as declared when the samples begin to count, or cannot be told from one, approaches nothing.
+//
+#pragma once
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace rosin {
+
+/// Counted from a take's first sample.
+struct rod_approach {
+  double share = 0, time_s = 1;
+
+  [[nodiscard]] bool seen() const noexcept { return share > 0; }
+  /// What is missing of the steady speed, relative to it.
+  [[nodiscard]] double lag(double at_s) const noexcept { return seen() ? share * std::exp(-at_s / time_s) : 0; }
+  /// From when on no more than that is missing.
+  [[nodiscard]] double within_s(double missing) const noexcept {
+    return share > missing ? time_s * std::log(share / missing) : 0;
+  }
+  /// The same, counted from a later sample.
+  [[nodiscard]] rod_approach from(double later_s) const noexcept { return {lag(later_s), time_s}; }
+};
+
+namespace detail {
+
+/// Medians over periods, and when.
+struct period_medians {
+  std::vector<double> at_s, relative;
+
+  period_medians(std::span<const double> velocity_m_s, double rate_Hz, double period_s, double rod_speed_m_s, double after_s) {
+    const auto length = static_cast<std::size_t>(std::max(1.0, std::round(period_s * rate_Hz)));
+    std::vector<double> one;
+    for (auto first = static_cast<std::size_t>(after_s * rate_Hz); first + length <= velocity_m_s.size(); first += length) {
+      one.assign(velocity_m_s.begin() + static_cast<std::ptrdiff_t>(first),
+                 velocity_m_s.begin() + static_cast<std::ptrdiff_t>(first + length));
+      if (!std::all_of(one.begin(), one.end(), [](double v) { return std::isfinite(v); })) continue;
+      const auto middle = one.begin() + static_cast<std::ptrdiff_t>(length / 2);
+      std::nth_element(one.begin(), middle, one.end());
+      at_s.push_back((static_cast<double>(first) + 0.5 * static_cast<double>(length)) / rate_Hz);
+      relative.push_back(*middle / rod_speed_m_s);
+    }
+  }
+  [[nodiscard]] Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(at_s.size()); }
+};
+
+/// A line through medians against one column, with Cauchy's weights; the cost at its least.
+struct approach_line {
+  Eigen::Vector2d value = Eigen::Vector2d::Zero();  ///< level, factor of the column
+  double cost = 0;
+  Eigen::VectorXd left;
+
+  approach_line(const Eigen::VectorXd& target, const Eigen::VectorXd& column, double scale) {
+    value[0] = target.maxCoeff();
+    for (int pass = 0; pass < 12; ++pass) {
+      left = target.array() - value[0] - value[1] * column.array();
+      const Eigen::ArrayXd weight = 1 / (1 + (left / scale).array().square());
+      Eigen::MatrixXd x(target.size(), 2);
+      x << Eigen::VectorXd::Ones(target.size()), column;
+      Eigen::Matrix2d h = x.transpose() * (x.array().colwise() * weight).matrix();
+      h(1, 1) += 1e-12 + (column.isZero() ? 1 : 0);
+      value = h.ldlt().solve(x.transpose() * (target.array() * weight).matrix());
+    }
+    left = target.array() - value[0] - value[1] * column.array();
+    cost = (1 + (left / scale).array().square()).log().sum();
+  }
+  [[nodiscard]] double scatter() const {
+    std::vector<double> size(left.data(), left.data() + left.size());
+    for (double& x : size) x = std::abs(x);
+    std::nth_element(size.begin(), size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2), size.end());
+    return size[size.size() / 2];
+  }
+};
+
+}  // namespace detail
+
+/// Of the string's centre under the bow (NaN: unknown) of a stroke at this steady speed. `after_s`: until when nothing counts.
+[[nodiscard]] inline rod_approach find_rod_approach(std::span<const double> velocity_m_s, double rate_Hz, double period_s,
+                                                    double rod_speed_m_s, double after_s) {
+  constexpr std::size_t least = 12;        // medians
+  constexpr double least_lag = 0.02;       // at after_s
+  constexpr double least_evidence = 12;    // natural logarithm
+  constexpr double least_scatter = 0.002;  // of medians, of the speed
+  constexpr double shortest_s = 0.004;
+  const detail::period_medians medians(velocity_m_s, rate_Hz, period_s, rod_speed_m_s, after_s);
+  if (medians.at_s.size() < least || !(rod_speed_m_s != 0)) return {};
+  const Eigen::VectorXd target = Eigen::VectorXd::Map(medians.relative.data(), medians.size());
+  const Eigen::ArrayXd since = Eigen::ArrayXd::Map(medians.at_s.data(), medians.size()) - after_s;
+  const double longest_s = 0.5 * since.maxCoeff();
+  const auto column = [&](double time_s) -> Eigen::VectorXd { return -(-since / time_s).exp(); };
+  double time_s = shortest_s, scale = 0.05;
+  for (int pass = 0; pass < 4; ++pass) {
+    double least_cost = 1e300, scatter = scale;
+    for (double t = shortest_s; t < longest_s; t *= 1.06)
+      if (const detail::approach_line tried(target, column(t), scale); tried.cost < least_cost)
+        least_cost = tried.cost, time_s = t, scatter = tried.scatter();
+    scale = std::max(least_scatter, scatter);
+  }
+  const detail::approach_line found(target, column(time_s), scale), steady(target, Eigen::VectorXd::Zero(medians.size()), scale);
+  const double lag = found.value[1] / found.value[0];
+  if (!(found.value[0] > 0.3 && lag > least_lag && lag < 1.5 && steady.cost - found.cost > least_evidence)) return {};
+  return {lag * std::exp(after_s / time_s), time_s};
+}
+
+}  // namespace rosin
