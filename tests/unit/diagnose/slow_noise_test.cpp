@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // On a modal string, which shares nothing with the model that is fitted; noise by a first-order recursion, far beyond the white
 // noise below 150 Hz.
+#include <rosin/diagnose/slow_noise.hpp>
+
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 
 #include "plucked.hpp"
