@@ -79,6 +79,9 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
 [[nodiscard]] bool is_plain(const rosin::pluck_diagnosis& plucks);
 /// The contact as the rig file declares it.
 [[nodiscard]] rosin::contact_model declared_contact(const rosin::rig& rig);
+/// What is said of rods that are still gathering speed.
+[[nodiscard]] std::vector<std::string> approaches_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
+                                                     const rosin::pluck_diagnosis& plucks);
 [[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
                                                  const rosin::pluck_diagnosis& plucks, const rosin::contact_model& model);
 /// A width and a drift of the tension at once, where the strokes' versions part and torsion is declared.

@@ -220,6 +220,9 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   if (!plucks) return rosin::failure{plucks.error()};
   const rosin::pluck_diagnosis& p = plucks->sound();
   take_over(p, values, d);
+  if (p.slow_noise > 0)
+    d.assumed.push_back("the plucks' noise is slow, at the pitch " + in_digits(p.slow_noise, "%.2g") +
+                        " times (power) what it is at high frequencies: what lies between the first partials was taken out");
   const auto knows = [&](const char* effect) { return std::find(without.begin(), without.end(), effect) == without.end(); };
   if (p.explained && knows("pluck-position")) name_pluck_position(values, p, d);
   const bool accounted = !plucks->odd || add_odd(*plucks->odd, values, knows, d);
@@ -245,6 +248,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     }
     step();
     add_lost_levels(rig, p, strokes);
+    for (const auto& line : approaches_of(rig, strokes, p)) d.assumed.push_back(line);
     const rig_diagnosis before = d;
     contact_open = !examine_contact(rig, strokes, p, rise, without, d);
     if (contact_open && rise == 0 && knows("tension-drift") && knows("finite-contact-width"))

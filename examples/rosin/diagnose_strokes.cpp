@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose_parts.hpp"
+#include "digits.hpp"
 
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
@@ -167,6 +168,16 @@ std::vector<rosin::contact_take> contact_takes(const rosin::rig& rig, const std:
   std::vector<rosin::contact_take> takes;
   for (const auto& s : strokes) takes.push_back(contact_take_of(rig, s, plucks));
   return takes;
+}
+
+std::vector<std::string> approaches_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
+                                       const rosin::pluck_diagnosis& plucks) {
+  std::vector<std::string> out;
+  for (const auto& t : contact_takes(rig, strokes, plucks))
+    if (t.approach.seen())
+      out.push_back(t.name + ": the rod is still gathering speed at 0.03 s, " + in_digits(1000 * t.approach.time_s, "%.2g") +
+                    " ms to an e-th: examined from " + in_digits(t.start_s, "%.3f") + " s on");
+  return out;
 }
 
 rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,

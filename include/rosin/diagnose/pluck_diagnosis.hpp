@@ -74,7 +74,9 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   if (!cleaned) return d;
   auto again =
       detail::diagnose_as_recorded(cleaned->takes, cleaned->held, guess, options, catalogue_for, most_effects, cleaned->over);
-  return again ? again : d;
+  if (!again) return d;
+  again->slow_noise = cleaned->over;
+  return again;
 }
 
 /// The catalogue without what the declared model already contains.

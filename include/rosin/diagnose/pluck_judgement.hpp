@@ -32,6 +32,8 @@ struct pluck_diagnosis {
   bool mismatched = false, explained = true;
   double before = 0, after = 0, floor = 0;  ///< rms residual / rms recorded, on held-out takes where there are any
   std::vector<std::string> held_out;
+  double slow_noise =
+      0;  ///< at the pitch, power over that of white noise, where slow noise was taken out (slow_noise.hpp); 0: none
 };
 
 namespace detail {
