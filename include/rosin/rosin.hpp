@@ -25,6 +25,7 @@
 #include <rosin/math/fft_policy.hpp>
 #include <rosin/math/lane_fft.hpp>
 #include <rosin/math/lanes.hpp>
+#include <rosin/math/median.hpp>
 #include <rosin/math/plain_complex.hpp>
 #include <rosin/math/spectrum_line.hpp>
 

@@ -13,6 +13,8 @@
 //
 #pragma once
 
+#include <rosin/math/median.hpp>
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -41,12 +43,6 @@ struct robust_data {
 };
 
 namespace detail {
-
-inline double median_of(Eigen::VectorXd v) {
-  std::sort(v.begin(), v.end());
-  const Eigen::Index n = v.size();
-  return n == 0 ? 0.0 : n % 2 == 1 ? v[n / 2] : (v[n / 2 - 1] + v[n / 2]) / 2;
-}
 
 inline Eigen::VectorXd spread_of(const robust_data& d, double scatter) {
   return (d.variance.array() + (scatter * d.shape.array()).square()).sqrt();

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <rosin/diagnose/tone_band.hpp>
+#include <rosin/math/median.hpp>
 
 #include <complex>
 
@@ -145,10 +146,7 @@ namespace detail {
   for (double aside = 2 / length; aside < 8 / length; aside += 2 * step)
     for (const double f : {best.frequency_Hz - aside, best.frequency_Hz + aside})
       if (allowed(f)) nearby.push_back(detail::explained_at(coarse, f));
-  if (nearby.empty()) return best;
-  const auto middle = nearby.begin() + static_cast<std::ptrdiff_t>(nearby.size() / 2);
-  std::nth_element(nearby.begin(), middle, nearby.end());
-  best.around = *middle;
+  best.around = median_of(nearby);
   return best;
 }
 

@@ -203,7 +203,7 @@ private:
   const auto n = static_cast<Eigen::Index>(table.lines.size());
   Eigen::VectorXd y = detail::predicted_lines(table, fit.law), off(n);
   for (Eigen::Index i = 0; i < n; ++i) off[i] = std::log(table.lines[static_cast<std::size_t>(i)].frequency_Hz / y[i]);
-  y.head(n) *= std::exp(detail::median_of(off));
+  y.head(n) *= std::exp(median_of(off));
   double sum = 0;
   for (const auto& d : detail::left_by_law(table, y, fit.in_proportion))
     sum += detail::robust_log_likelihood(d.y, detail::spread_of(d, detail::scatter_of(d, d.y, 1, detail::law_limits)));

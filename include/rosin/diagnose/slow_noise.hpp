@@ -12,6 +12,8 @@
 #pragma once
 
 #include <rosin/diagnose/pluck_judgement.hpp>
+#include <rosin/math/fft.hpp>
+#include <rosin/math/median.hpp>
 
 namespace rosin {
 
@@ -39,9 +41,15 @@ public:
     const double size = static_cast<double>(left_.rows());
     per_partial_ = 2 * size * pitch_Hz / rate;
     content_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(2 * size * edge_Hz / rate), 2);
-    for (Eigen::Index k = 0; k < content_.rows(); ++k) {
-      const Eigen::VectorXd wave = wave_of(k, 0, left_.rows());
-      content_.row(k) = 2 / size * wave.transpose() * left_;
+    if (content_.rows() == 0) return;
+    eigen_fft<double> fft(2 * static_cast<std::size_t>(left_.rows()));
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      Eigen::VectorXd padded = Eigen::VectorXd::Zero(2 * left_.rows());
+      padded.head(left_.rows()) = left_.col(c);
+      Eigen::VectorXcd bins(left_.rows() + 1);
+      fft.forward(padded.data(), bins.data());
+      for (Eigen::Index k = 0; k < content_.rows(); ++k)
+        content_(k, c) = 2 / size * (bins[k + 1] * std::conj(half_sample(k))).real();
     }
   }
 
@@ -66,18 +74,19 @@ public:
         std::vector<double> around;
         for (Eigen::Index i = std::max<Eigen::Index>(0, k - reach); i < std::min(all.rows(), k + reach + 1); ++i)
           if (std::abs(i - k) > 2) around.push_back(std::pow(all(i, c), 2));
-        if (around.empty()) continue;
-        const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-        std::nth_element(around.begin(), middle, around.end());
-        if (std::pow(all(k, c), 2) > times * *middle && k > 2)
+        if (!around.empty() && std::pow(all(k, c), 2) > times * median_of(around) && k > 2)
           content_.block(std::max<Eigen::Index>(0, k - 1), c, std::min<Eigen::Index>(3, all.rows() - k + 1), 1).setZero();
       }
   }
   /// The samples of a record of this length, in one channel.
   [[nodiscard]] Eigen::VectorXd slow(Eigen::Index channel, Eigen::Index length) const {
-    Eigen::VectorXd out = Eigen::VectorXd::Zero(length);
+    const Eigen::Index n = left_.rows();
+    Eigen::VectorXcd bins = Eigen::VectorXcd::Zero(n + 1);
     for (Eigen::Index k = 0; k < content_.rows(); ++k)
-      if (content_(k, channel) != 0) out += content_(k, channel) * wave_of(k, -first_, length - first_);
+      bins[k + 1] = static_cast<double>(n) * content_(k, channel) * half_sample(k);
+    Eigen::VectorXd whole(2 * n), out(length);
+    eigen_fft<double>(2 * static_cast<std::size_t>(n)).inverse(bins.data(), whole.data());
+    for (Eigen::Index i = 0; i < length; ++i) out[i] = whole[((i - first_) % (2 * n) + 2 * n) % (2 * n)];
     return out;
   }
   /// Mean squares in the first and the last two fifths of what rings.
@@ -88,17 +97,9 @@ public:
   }
 
 private:
-  /// The wave from one sample to another, counted from the first that the model was compared with.
-  [[nodiscard]] Eigen::VectorXd wave_of(Eigen::Index k, Eigen::Index from, Eigen::Index to) const {
-    Eigen::VectorXd out(to - from);
-    const double w = std::numbers::pi * static_cast<double>(k + 1) / static_cast<double>(left_.rows());
-    const std::complex<double> turn = std::polar(1.0, w);
-    std::complex<double> z;
-    for (Eigen::Index i = 0; i < out.size(); ++i, z *= turn) {
-      if (i % 4096 == 0) z = std::polar(1.0, w * (static_cast<double>(from + i) + 0.5));
-      out[i] = z.real();
-    }
-    return out;
+  /// By how much a wave turns in half a sample.
+  [[nodiscard]] std::complex<double> half_sample(Eigen::Index k) const {
+    return std::polar(1.0, 0.5 * std::numbers::pi * static_cast<double>(k + 1) / static_cast<double>(left_.rows()));
   }
 
   /// Of a wave; -1: at a partial.
@@ -131,8 +132,7 @@ struct slow_noise {
       over.insert(over.end(), one.begin(), one.end());
     }
     if (over.size() < 8) break;
-    std::nth_element(over.begin(), over.begin() + static_cast<std::ptrdiff_t>(over.size() / 2), over.end());
-    const double here = over[over.size() / 2] / white_median;
+    const double here = median_of(over) / white_median;
     if (!(here > (found.gaps == 0 ? much : much / 2))) break;
     if (found.gaps < 2) beside_pitch[static_cast<std::size_t>(found.gaps)] = here;
   }

@@ -37,8 +37,8 @@ class wide_record {
 
 public:
   wide_record(const contact_take& take, const stick_record& record)
-      : take_{take}, origin_{record.origin()}, edge_Hz_{record.window().edge_Hz}, near_{record.known(take.near_N), take.rate_Hz},
-        far_{record.known(take.far_N), take.rate_Hz} {}
+      : take_{take}, rod_m_s_{record.rod_m_s()}, edge_Hz_{record.window().edge_Hz},
+        near_{record.known(take.near_N), take.rate_Hz}, far_{record.known(take.far_N), take.rate_Hz} {}
 
   /// `columns` of compliance; those that are not asked for are empty.
   [[nodiscard]] wide_motion at(double half_delay_s, const smooth_window& window, const torsion_values& values,
@@ -47,9 +47,7 @@ public:
     const auto table = by_bins(window.edge_Hz, [&](double f) { return passage(f, half_delay_s, torsion); });
     wide_motion m{row_of(table, 0, window), row_of(table, 1, window), {}};
     for (std::size_t i = 0; i < columns; ++i) m.compliance[i] = row_of(table, 2 + i, window);
-    for (auto* v : {&m.near_m_s, &m.far_m_s})
-      for (std::size_t i = 0; i < v->size(); ++i)
-        (*v)[i] -= take_.rod_speed_m_s * (1 - take_.approach.lag(static_cast<double>(origin_ + i) / take_.rate_Hz));
+    for (auto* v : {&m.near_m_s, &m.far_m_s}) detail::add_to(*v, rod_m_s_, -1);
     return m;
   }
 
@@ -161,7 +159,7 @@ private:
   }
 
   contact_take take_;
-  std::size_t origin_;
+  std::vector<double> rod_m_s_;
   double edge_Hz_;
   contact_signal<> near_, far_;
 };

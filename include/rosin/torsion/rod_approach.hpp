@@ -12,6 +12,8 @@
 //
 #pragma once
 
+#include <rosin/math/median.hpp>
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -45,15 +47,11 @@ struct period_medians {
 
   period_medians(std::span<const double> velocity_m_s, double rate_Hz, double period_s, double rod_speed_m_s, double after_s) {
     const auto length = static_cast<std::size_t>(std::max(1.0, std::round(period_s * rate_Hz)));
-    std::vector<double> one;
     for (auto first = static_cast<std::size_t>(after_s * rate_Hz); first + length <= velocity_m_s.size(); first += length) {
-      one.assign(velocity_m_s.begin() + static_cast<std::ptrdiff_t>(first),
-                 velocity_m_s.begin() + static_cast<std::ptrdiff_t>(first + length));
+      const auto one = velocity_m_s.subspan(first, length);
       if (!std::all_of(one.begin(), one.end(), [](double v) { return std::isfinite(v); })) continue;
-      const auto middle = one.begin() + static_cast<std::ptrdiff_t>(length / 2);
-      std::nth_element(one.begin(), middle, one.end());
       at_s.push_back((static_cast<double>(first) + 0.5 * static_cast<double>(length)) / rate_Hz);
-      relative.push_back(*middle / rod_speed_m_s);
+      relative.push_back(median_of(one) / rod_speed_m_s);
     }
   }
   [[nodiscard]] Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(at_s.size()); }
@@ -79,12 +77,7 @@ struct approach_line {
     left = target.array() - value[0] - value[1] * column.array();
     cost = (1 + (left / scale).array().square()).log().sum();
   }
-  [[nodiscard]] double scatter() const {
-    std::vector<double> size(left.data(), left.data() + left.size());
-    for (double& x : size) x = std::abs(x);
-    std::nth_element(size.begin(), size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2), size.end());
-    return size[size.size() / 2];
-  }
+  [[nodiscard]] double scatter() const { return median_of(left.cwiseAbs()); }
 };
 
 }  // namespace detail

@@ -61,12 +61,16 @@ public:
       : take_{take}, begin_{first(take)}, force_{known(take.force_N), take.rate_Hz, usual_memory_s} {
     contact_signal<> velocity{known(take.velocity_m_s), take.rate_Hz};
     relative_ = velocity.through(window(), [](double) { return 1.0; });
-    for (std::size_t i = 0; i < relative_.size(); ++i) relative_[i] -= rod_speed_m_s(i);
+    const std::vector<double> rod = rod_m_s();
+    for (std::size_t i = 0; i < relative_.size(); ++i) relative_[i] -= rod[i];
   }
 
-  /// Of the rod, at a known sample.
-  [[nodiscard]] double rod_speed_m_s(std::size_t i) const noexcept {
-    return take_.rod_speed_m_s * (1 - take_.approach.lag(static_cast<double>(begin_ + i) / take_.rate_Hz));
+  /// The rod's speed at the known samples.
+  [[nodiscard]] std::vector<double> rod_m_s() const {
+    std::vector<double> out(relative_.size(), take_.rod_speed_m_s);
+    for (std::size_t i = 0; take_.approach.seen() && i < out.size(); ++i)
+      out[i] *= 1 - take_.approach.lag(static_cast<double>(begin_ + i) / take_.rate_Hz);
+    return out;
   }
   /// What a take has of its own while it sticks: a level; and where its rod approaches its speed, the errors of that.
   [[nodiscard]] std::vector<std::vector<double>> rod_columns() const {
