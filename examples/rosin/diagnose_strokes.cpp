@@ -187,9 +187,10 @@ rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diag
 
 std::optional<rosin::width_and_drift> width_and_drift_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
                                                          const rosin::pluck_diagnosis& plucks) {
-  static constexpr double parts = 0.1;  // a width that can be told makes the versions do so
+  constexpr double parts = 0.1;  // a width that can be told makes the versions do so
   const rosin::contact_model model = declared_contact(rig);
-  if (!model.torsion || std::none_of(strokes.begin(), strokes.end(), [](const auto& s) { return s.delta > parts; })) return {};
+  if (!model.torsion || std::none_of(strokes.begin(), strokes.end(), [](const diagnosed_stroke& s) { return s.delta > parts; }))
+    return {};
   return rosin::find_width_and_drift(contact_takes(rig, strokes, plucks), *model.torsion);
 }
 
