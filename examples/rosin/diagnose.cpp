@@ -9,6 +9,8 @@
 #include "progress.hpp"
 #include "report_figure.hpp"
 
+#include <rosin/acquire/effect_names.hpp>
+
 #include <iostream>
 #include <memory>
 
@@ -110,6 +112,7 @@ void add_diagnose(CLI::App& app, exit_code& result) {
   command
       ->add_option("--without", given->without,
                    "An effect that the catalogue is not to know (any number): what would be said then?")
+      ->check(CLI::IsMember(std::vector<std::string>(rosin::effect_names.begin(), rosin::effect_names.end())).description(""))
       ->type_name("EFFECT");
   auto* isolability =
       command->add_flag("--isolability", given->isolability, "What the plucks of the rig file can tell apart, recorded or not")

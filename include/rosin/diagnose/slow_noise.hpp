@@ -4,8 +4,8 @@
 // Noise of sensors and amplifiers grows towards low frequencies, far beyond the white noise that every fit weighs recordings by:
 // held forces and first periods then seem to tell what they do not. Below the pitch nothing of a string rings. So what a model
 // leaves there, of all of a recording, is taken out where it is noise: well above the white noise at most frequencies, there to
-// the end as at the beginning (what a pluck brings about dies away) and no stronger after strong plucks than after weak ones; and
-// between the first partials, too, as far up as there is more than white noise. A line that stands out stays: that is hum.
+// the end as at the beginning (what a pluck brings about dies away), in every take, and no stronger after strong plucks than after
+// weak ones; and between the first partials, too, as far up as there is more than white noise. A line that stands out stays: that is hum.
 //
 //     slow(n) = sum_k c_k cos(pi k (n + 1/2) / N),   k = 1 ... 2 N f_edge / rate
 //
@@ -129,6 +129,7 @@ struct slow_noise {
     std::vector<double> over;
     for (const slow_rest& r : rests) {
       const auto one = r.over(noise_N, channel, found.gaps);
+      if (found.gaps == 0 && !one.empty() && median_of(one) < much / 2 * white_median) return {};
       over.insert(over.end(), one.begin(), one.end());
     }
     if (over.size() < 8) break;
