@@ -51,7 +51,8 @@ TEST_CASE("contact slip effects: a normal force that ripples faster than the str
 
 TEST_CASE(
     "contact slip effects: where sensors lost the mean force, strokes may be off by a constant, and a ripple's size holds that "
-    "doubt") {
+    "doubt" *
+    doctest::test_suite("long")) {
   auto slow = contact_rigs::slow(), fast = contact_rigs::fast();
   slow.normal_Hz = fast.normal_Hz = 118;
   slow.normal_relative = fast.normal_relative = 0.08;
@@ -132,7 +133,8 @@ TEST_CASE("contact slip effects: a velocity curve as declared gains by nothing")
   CHECK(rosin::law_hypothesis(bench).gain < 20);
 }
 
-TEST_CASE("contact slip effects: heat is told as well where the curve leaves as little as imperfect models do") {
+TEST_CASE("contact slip effects: heat is told as well where the curve leaves as little as imperfect models do" *
+          doctest::test_suite("long")) {
   const rosin::contact_heat_parameters<double> heat{.layer_m = 1e-6, .area_per_newton_m2 = 3e-8};
   const auto strength = rosin::design_yield_curve(rosin::two_exponential_curve<>{}, heat.without_string(), 0.3);
   REQUIRE(strength);
@@ -154,7 +156,8 @@ TEST_CASE("contact slip effects: heat is told as well where the curve leaves as 
   CHECK(h.fluctuation < 0.5 * bench.declared().residual());
 }
 
-TEST_CASE("contact slip effects: heat that takes little of what the curve leaves is not what is wrong") {
+TEST_CASE("contact slip effects: heat that takes little of what the curve leaves is not what is wrong" *
+          doctest::test_suite("long")) {
   const rosin::contact_heat_parameters<double> heat{.layer_m = 1e-6, .area_per_newton_m2 = 3e-8};
   const auto strength = rosin::design_yield_curve(rosin::two_exponential_curve<>{}, heat.without_string(), 0.3);
   REQUIRE(strength);

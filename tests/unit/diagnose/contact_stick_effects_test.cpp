@@ -39,7 +39,7 @@ template <class Law>
 
 }  // namespace
 
-TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q and mass") {
+TEST_CASE("contact stick effects: a rod that gives way, with its frequency, q and mass" * doctest::test_suite("long")) {
   const contact_rigs::springy_rod<decltype(contact_rigs::curve())> law{contact_rigs::curve(), 1800, 14, 0.003};
   auto [slow, fast, takes, bench] = over(law, 11, 13);
   const auto rod = rod_of(bench);
@@ -68,7 +68,8 @@ TEST_CASE("contact stick effects: rods that ring for longer than a window of the
   }
 }
 
-TEST_CASE("contact stick effects: a light rod is peculiar, but not within the width of a torsional mode") {
+TEST_CASE("contact stick effects: a light rod is peculiar, but not within the width of a torsional mode" *
+          doctest::test_suite("long")) {
   constexpr double first_Hz = 7 * 660;  // of the torsion that rolls
   for (const double frequency_Hz : {0.97 * first_Hz, 0.8 * first_Hz}) {
     CAPTURE(frequency_Hz);
@@ -81,7 +82,7 @@ TEST_CASE("contact stick effects: a light rod is peculiar, but not within the wi
   }
 }
 
-TEST_CASE("contact stick effects: creep, with its speed and how sharply it grows") {
+TEST_CASE("contact stick effects: creep, with its speed and how sharply it grows" * doctest::test_suite("long")) {
   constexpr double limit_m_s = 0.02, sharp = 0.3;
   const rosin::two_exponential_curve<double> curve{};
   const rosin::creep<rosin::two_exponential_curve<double>> law{curve, {limit_m_s, sharp}};
@@ -98,7 +99,7 @@ TEST_CASE("contact stick effects: creep, with its speed and how sharply it grows
     CHECK(other.gain < 0.5 * creep.gain);
 }
 
-TEST_CASE("contact stick effects: a contact as declared gains by nothing") {
+TEST_CASE("contact stick effects: a contact as declared gains by nothing" * doctest::test_suite("long")) {
   auto [slow, fast, takes, bench] = over(contact_rigs::curve(), 31, 33);
   REQUIRE(bench.usable());
   for (const auto& h : {rosin::torsion_hypothesis(bench), rosin::rod_hypothesis(bench), rosin::bristle_hypothesis(bench),
@@ -108,7 +109,7 @@ TEST_CASE("contact stick effects: a contact as declared gains by nothing") {
   }
 }
 
-TEST_CASE("contact stick effects: one harmonic of the string that is off is no rod") {
+TEST_CASE("contact stick effects: one harmonic of the string that is off is no rod" * doctest::test_suite("long")) {
   const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 31),
              b = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), contact_rigs::rolls, 33);
   const struct { double off_m_s, most_q; } faults[] = {{1e-3, 100}, {1e-2, 200}};

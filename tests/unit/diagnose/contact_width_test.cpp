@@ -12,7 +12,7 @@ TEST_CASE("contact width: a contact at one point is not called wide") {
   CHECK((!h || !h->decided));
 }
 
-TEST_CASE("contact width: of five places, some of which slide on now and then while others hold") {
+TEST_CASE("contact width: of five places, some of which slide on now and then while others hold" * doctest::test_suite("long")) {
   constexpr double width_m = 3e-3;
   const auto a =
       contact_rigs::play(contact_rigs::curve(), contact_rigs::slow(), contact_rigs::rolls, 81, 0.27, 0.05, 0.3e-3, width_m, 5);
@@ -25,7 +25,7 @@ TEST_CASE("contact width: of five places, some of which slide on now and then wh
   CHECK(std::abs(width.value - width_m) < 2 * width.sd);
 }
 
-TEST_CASE("contact width: and torsion that nobody declared, each of which hides the other") {
+TEST_CASE("contact width: and torsion that nobody declared, each of which hides the other" * doctest::test_suite("long")) {
   constexpr double width_m = 3e-3;
   const auto a = contact_rigs::play(contact_rigs::curve(), contact_rigs::fast(), {6, 3.4, 27}, 81, 0.2, 0.06, 0.3e-3, width_m, 5);
   rosin::stick_bench bench({a.take()}, {});

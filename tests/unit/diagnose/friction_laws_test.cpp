@@ -45,7 +45,7 @@ TEST_CASE("friction laws: the law that made the force explains it, on takes it h
   }
 }
 
-TEST_CASE("friction laws: thermal friction of a simulated stroke, reconstructed") {
+TEST_CASE("friction laws: thermal friction of a simulated stroke, reconstructed" * doctest::test_suite("long")) {
   const rosin::two_exponential_curve<> steady;
   const rosin::contact_heat_parameters<double> heat{.layer_m = 3e-6, .area_per_newton_m2 = 1e-7};
   const auto strength = rosin::design_yield_curve(steady, heat.without_string(), 0.3);

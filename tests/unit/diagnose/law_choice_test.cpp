@@ -17,7 +17,7 @@ rosin::outcome<rosin::law_choice> chosen(const Law& law, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("law choice: a velocity curve is told as one") {
+TEST_CASE("law choice: a velocity curve is told as one" * doctest::test_suite("long")) {
   const auto c = chosen(contact_rigs::curve(), 81);
   REQUIRE(c);
   CHECK(c->law == rosin::contact_law::velocity_curve);
@@ -25,7 +25,7 @@ TEST_CASE("law choice: a velocity curve is told as one") {
   CHECK_FALSE(c->laws[2].counts());
 }
 
-TEST_CASE("law choice: heat is told from strokes that were not fitted") {
+TEST_CASE("law choice: heat is told from strokes that were not fitted" * doctest::test_suite("long")) {
   const rosin::two_exponential_curve<> steady;
   const rosin::contact_heat_parameters<double> heat{.layer_m = 3e-6, .area_per_newton_m2 = 1e-7};
   const auto strength = rosin::design_yield_curve(steady, heat.without_string(), 0.3);
@@ -36,7 +36,8 @@ TEST_CASE("law choice: heat is told from strokes that were not fitted") {
   CHECK(c->margin > 50);
 }
 
-TEST_CASE("law choice: bristles, 60 us to give way, with their stiffness and how it goes with the normal force") {
+TEST_CASE("law choice: bristles, 60 us to give way, with their stiffness and how it goes with the normal force" *
+          doctest::test_suite("long")) {
   const rosin::two_exponential_curve<> steady;
   const double per_newton = steady(0).value / (0.22 * 60e-6);
   const auto c = chosen(

@@ -43,7 +43,7 @@ std::vector<rosin::slip_record> without_their_mean(bool thermal, std::vector<dou
 
 }  // namespace
 
-TEST_CASE("lost level: heat knows where zero is") {
+TEST_CASE("lost level: heat knows where zero is" * doctest::test_suite("long")) {
   std::vector<double> lost;
   const auto found = rosin::find_lost_levels(without_their_mean(true, lost));
   CHECK(found.law == rosin::contact_law::thermal);

@@ -31,7 +31,7 @@ void check_named(const pickup_diagnosis& d, const char* effect, std::size_t whic
 
 }  // namespace
 
-TEST_CASE("diagnose_pickups: no mismatch where nothing is concealed") {
+TEST_CASE("diagnose_pickups: no mismatch where nothing is concealed" * doctest::test_suite("long")) {
   const auto d = diagnosed({});
   CHECK(d.missing.empty());
   CHECK_FALSE(d.mismatched);
@@ -54,7 +54,7 @@ TEST_CASE("diagnose_pickups: what is concealed is named, alone, from one pluck, 
   CHECK(16 * std::pow(s.tension_N, 3) * glide.glide_per_power == test::approx(4000).epsilon(0.07));
 }
 
-TEST_CASE("diagnose_pickups: an effect that the catalogue is not to know ends unexplained") {
+TEST_CASE("diagnose_pickups: an effect that the catalogue is not to know ends unexplained" * doctest::test_suite("long")) {
   rosin_test::heard_string s;
   s.inharmonicity = 1e-4, s.limit_Hz = 4000;
   const std::vector<pickup_signal> fitted{s.pluck("one", 0.13, 0.3, 1)}, held{s.pluck("two", 0.22, 0.3, 2)};
@@ -65,7 +65,7 @@ TEST_CASE("diagnose_pickups: an effect that the catalogue is not to know ends un
   CHECK_FALSE(d->explained);
 }
 
-TEST_CASE("diagnose_pickups: a hum close to a partial does not bend it") {
+TEST_CASE("diagnose_pickups: a hum close to a partial does not bend it" * doctest::test_suite("long")) {
   rosin_test::heard_string s;
   s.fundamental_Hz = 212, s.limit_Hz = 4000, s.noise = 3e-4;
   const auto humming = [&](pickup_signal p, double phase) {
@@ -96,7 +96,8 @@ TEST_CASE("diagnose_pickups: partials that a bead has moved far off are found wh
   for (int n = 1; n <= 12; ++n) CHECK(d.table.find(n) != nullptr);
 }
 
-TEST_CASE("diagnose_pickups: what is heard above the highest partial that is followed is no mismatch") {
+TEST_CASE("diagnose_pickups: what is heard above the highest partial that is followed is no mismatch" *
+          doctest::test_suite("long")) {
   rosin_test::heard_string s;
   s.fundamental_Hz = 60, s.limit_Hz = 7000, s.quality = 2500, s.noise = 3e-4;
   const auto d = diagnosed(s.pluck("one", 0.13, 0.3, 1), s.pluck("two", 0.22, 0.4, 2), 60);

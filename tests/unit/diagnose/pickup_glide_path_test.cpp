@@ -15,7 +15,7 @@ TEST_CASE("glide_shape: path by hand") {
   CHECK(s.path_s(3, 0.5) == test::approx(part(0.75, 2, 0.5) + 1.5 * part(0.25, 6, 0.5)));
 }
 
-TEST_CASE("find_glide: E A of a simulated string within some per cent; none where there is none") {
+TEST_CASE("find_glide: E A of a simulated string within some per cent; none where there is none" * doctest::test_suite("long")) {
   rosin_test::heard_string s;
   s.burden.axial_stiffness_N = 5000;
   const auto r = listen(s.pluck("a", 0.13, 2, 1), 220);

@@ -19,7 +19,7 @@ std::vector<std::string> names_in(const line_table& t, const line_table& held = 
 
 }  // namespace
 
-TEST_CASE("search_law: two effects together, one after the other") {
+TEST_CASE("search_law: two effects together, one after the other" * doctest::test_suite("long")) {
   const pickup_law both{.fundamental_Hz = 200, .inharmonicity = 5e-5, .inverse_q = 1e-3, .internal_s = 4e-7};
   CHECK(names_in(rosin_test::table_from(both, 14, 0.003, 0.01, 1)) ==
         std::vector<std::string>{"bending-stiffness", "frequency-dependent-loss"});

@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-TEST_CASE("of several effects the one that is there comes first") {
+TEST_CASE("of several effects the one that is there comes first" * doctest::test_suite("long")) {
   const rosin::string_facts facts{
       .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
   const rosin::pluck_options options{.internal_loss = false};
@@ -49,7 +49,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what no parameter scales is sought from little on: an effect that hardly shows is found all the same") {
+TEST_CASE("what no parameter scales is sought from little on: an effect that hardly shows is found all the same" *
+          doctest::test_suite("long")) {
   const rosin::string_facts facts{
       .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
   const rosin::pluck_options options{.internal_loss = false};

@@ -36,7 +36,8 @@ TEST_CASE("a string as declared is left alone, and predicted to the noise") {
   CHECK(d->before > 0.8 * d->floor);
 }
 
-TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck that was kept aside is predicted") {
+TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck that was kept aside is predicted" *
+          doctest::test_suite("long")) {
   constexpr double slow = 40e-6;
   const auto d = look({test::modal_pluck(1, 1, slow), test::modal_pluck(0.5, 2, slow)}, test::modal_pluck(0.75, 3, slow));
   REQUIRE_MESSAGE(d, d.error());
@@ -49,7 +50,7 @@ TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck
   CHECK(d->mismatch.residual_over_noise > 2);
 }
 
-TEST_CASE("a loss that grows with frequency is none to the air of less than nothing") {
+TEST_CASE("a loss that grows with frequency is none to the air of less than nothing" * doctest::test_suite("long")) {
   auto rig = test::plucked_rig;
   rig.string.loss.internal_s = 3e-8;
   std::vector<rosin::pluck_take> takes;

@@ -33,7 +33,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "pluck judgement: what leaves mere noise of the plucks that were fitted, and much of the one set aside, is no explanation") {
+    "pluck judgement: what leaves mere noise of the plucks that were fitted, and much of the one set aside, is no explanation" *
+    doctest::test_suite("long")) {
   constexpr double slow = 40e-6;
   const std::vector takes{test::modal_pluck(1, 1, slow), test::modal_pluck(0.5, 2, slow)};
   std::vector held{test::modal_pluck(0.75, 3, slow)};

@@ -49,7 +49,7 @@ double rms(const std::vector<double>& x) {
 
 }  // namespace
 
-TEST_CASE("slow noise: below the pitch it goes, white noise stays as it is") {
+TEST_CASE("slow noise: below the pitch it goes, white noise stays as it is" * doctest::test_suite("long")) {
   const rosin::pluck_take quiet = test::modal_pluck(0.75, 3);
   std::vector<rosin::pluck_take> white{test::modal_pluck(1, 1), test::modal_pluck(0.5, 2)}, takes = white;
   std::vector<rosin::pluck_take> held{quiet};
@@ -75,7 +75,8 @@ TEST_CASE("slow noise: below the pitch it goes, white noise stays as it is") {
   CHECK_FALSE(rosin::without_slow_noise(noisy, held));
 }
 
-TEST_CASE("slow noise: a string as declared is left alone in it, and a wire that lets go slowly named all the same") {
+TEST_CASE("slow noise: a string as declared is left alone in it, and a wire that lets go slowly named all the same" *
+          doctest::test_suite("long")) {
   for (const double slow_s : {0.0, 40e-6}) {
     CAPTURE(slow_s);
     std::vector<rosin::pluck_take> takes{test::modal_pluck(1, 1, slow_s), test::modal_pluck(0.5, 2, slow_s)},
