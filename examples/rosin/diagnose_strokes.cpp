@@ -175,8 +175,9 @@ std::vector<std::string> approaches_of(const rosin::rig& rig, const std::vector<
   std::vector<std::string> out;
   for (const auto& t : contact_takes(rig, strokes, plucks))
     if (t.approach.seen())
-      out.push_back(t.name + ": the rod is still gathering speed at 0.03 s, " + in_digits(1000 * t.approach.time_s, "%.2g") +
-                    " ms to an e-th: examined from " + in_digits(t.start_s, "%.3f") + " s on");
+      out.push_back(t.name + ": the rod is still gathering speed, or the string settling, at 0.03 s, " +
+                    in_digits(1000 * t.approach.time_s, "%.2g") + " ms to an e-th: examined from " +
+                    in_digits(t.start_s, "%.3f") + " s on");
   return out;
 }
 

@@ -9,7 +9,8 @@
 //
 // by Cauchy's likelihood, which bears the periods in which the string does not stick; every time on a grid, share and level by least
 // squares. A rod that is as fast as declared when the samples begin to count, or cannot be told from one, approaches nothing.
-// Medians rise, too, where a string that has not settled slips for less and less of its periods; its fastest samples do not.
+// Medians rise, too, while a string that has not settled slips for less and less of its periods: the two are not told apart
+// (the fastest samples do not tell them: an attack is faster than its rod).
 //
 #pragma once
 
@@ -42,9 +43,9 @@ struct rod_approach {
 
 namespace detail {
 
-/// Medians over periods, what a tenth of the samples exceeds, and when.
+/// Medians over periods, and when.
 struct period_medians {
-  std::vector<double> at_s, relative, high;
+  std::vector<double> at_s, relative;
 
   period_medians(std::span<const double> velocity_m_s, double rate_Hz, double period_s, double rod_speed_m_s, double after_s) {
     const auto length = static_cast<std::size_t>(std::max(1.0, std::round(period_s * rate_Hz)));
@@ -53,10 +54,6 @@ struct period_medians {
       if (!std::all_of(one.begin(), one.end(), [](double v) { return std::isfinite(v); })) continue;
       at_s.push_back((static_cast<double>(first) + 0.5 * static_cast<double>(length)) / rate_Hz);
       relative.push_back(median_of(one) / rod_speed_m_s);
-      Eigen::VectorXd sorted = Eigen::VectorXd::Map(one.data(), static_cast<Eigen::Index>(one.size())) / rod_speed_m_s;
-      const auto tenth = sorted.begin() + 9 * sorted.size() / 10;
-      std::nth_element(sorted.begin(), tenth, sorted.end());
-      high.push_back(*tenth);
     }
   }
   [[nodiscard]] Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(at_s.size()); }
@@ -112,8 +109,6 @@ struct approach_line {
   const detail::approach_line found(target, column(time_s), scale), steady(target, Eigen::VectorXd::Zero(medians.size()), scale);
   const double lag = found.value[1] / found.value[0];
   if (!(found.value[0] > 0.3 && lag > least_lag && lag < 1.5 && steady.cost - found.cost > least_evidence)) return {};
-  const detail::approach_line fastest(Eigen::VectorXd::Map(medians.high.data(), medians.size()), column(time_s), scale);
-  if (!(fastest.value[1] > 0.5 * lag * fastest.value[0])) return {};
   return {lag * std::exp(after_s / time_s), time_s};
 }
 
