@@ -106,8 +106,7 @@ void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& p, prove
     if (!read) continue;
     for (const rosin::finding& f : read->check.findings) {
       if (f.kind != "dropouts" || (f.channel != "near" && f.channel != "far")) continue;
-      d.missing.push_back(
-          lost(take.name, f.channel, std::round((f.end_s - f.start_s) * read->signals.sample_rate_Hz), f.start_s));
+      d.missing.push_back(lost(take.name, f.channel, static_cast<double>(f.samples), f.start_s));
       if (!d.take.empty()) continue;
       d.take = take.name, d.channel = f.channel, d.time_s = {f.start_s, f.end_s};
       d.after = d.before;

@@ -23,6 +23,39 @@ std::optional<rosin::pluck_take> pluck_of(const rosin::rig& rig, const rosin::ta
   return out;
 }
 
+/// Until when a take with errors can be used: where they are lost samples and nothing else, until shortly before the first.
+std::optional<double> sound_until_s(const checked_take& read) {
+  constexpr double aside = 16;  // samples
+  std::optional<double> first;
+  for (const rosin::finding& f : read.check.findings) {
+    if (f.level != rosin::severity::error) continue;
+    if (f.kind != "dropouts") return std::nullopt;
+    first = std::min(first.value_or(f.start_s), f.start_s);
+  }
+  if (first) *first -= aside / read.signals.sample_rate_Hz;
+  return first;
+}
+
+/// A pluck that lost samples, and until when it is whole.
+struct begun_pluck {
+  rosin::pluck_take take;
+  double until_s = 0;
+  bool held_out = false;
+};
+
+/// Where no pluck is whole, what those are before they lost samples, if that is long enough to ring in.
+void use_beginnings(std::vector<begun_pluck> begun, double fundamental_Hz, rig_plucks& out) {
+  constexpr double least_periods = 20;
+  if (!out.takes.empty() || !out.held_out.empty()) return;
+  for (begun_pluck& b : begun) {
+    if (b.until_s * fundamental_Hz < least_periods) continue;
+    for (auto& channel : b.take.force_N) channel.resize(static_cast<std::size_t>(b.until_s * b.take.rate_Hz));
+    out.warnings.push_back(b.take.name + ": as no pluck is whole, used until it lost samples, " + in_digits(b.until_s, "%.4f") +
+                           " s");
+    (b.held_out ? out.held_out : out.takes).push_back(std::move(b.take));
+  }
+}
+
 void keep_one_rate(rig_plucks& out) {
   if (out.takes.empty()) return;
   const double rate = out.takes.front().rate_Hz;
@@ -41,16 +74,20 @@ rig_plucks read_plucks(const rosin::rig& rig, provenance& from) {
   const auto plucks =
       std::count_if(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::pluck; });
   progress bar{"reading plucks", static_cast<std::size_t>(plucks)};
+  std::vector<begun_pluck> begun;
   for (const auto& take : rig.takes) {
     if (take.kind != rosin::take_kind::pluck) continue;
     bar.step();
     const auto read = read_telling(rig, take, from, out.warnings);
     const bool sound = read && !rosin::has_error(read->check.findings);
     if (read && !sound) out.warnings.push_back(take.name + ": left out for the error above");
-    auto pluck = sound ? pluck_of(rig, take, *read, out.warnings) : std::nullopt;
-    if (!pluck) out.incomplete = true;
-    else (take.hold_out ? out.held_out : out.takes).push_back(*std::move(pluck));
+    const auto until_s = read && !sound ? sound_until_s(*read) : std::nullopt;
+    auto pluck = sound || until_s ? pluck_of(rig, take, *read, out.warnings) : std::nullopt;
+    if (!pluck || until_s) out.incomplete = true;
+    if (pluck && until_s) begun.push_back({*std::move(pluck), *until_s, take.hold_out});
+    else if (pluck) (take.hold_out ? out.held_out : out.takes).push_back(*std::move(pluck));
   }
+  use_beginnings(std::move(begun), rig.string.fundamental_Hz, out);
   keep_one_rate(out);
   return out;
 }

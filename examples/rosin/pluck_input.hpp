@@ -16,7 +16,8 @@ struct rig_plucks {
   bool incomplete = false;  ///< some had to be left out
 };
 
-/// Reads every pluck; those with an error are left out and named. All that are to be fitted have one rate: that of the first.
+/// Reads every pluck; those with an error are left out and named. All that are to be fitted have one rate: that of the first. Where
+/// every one lost samples, what they are before that is used, and said.
 [[nodiscard]] rig_plucks read_plucks(const rosin::rig& rig, provenance& from);
 
 /// The effects that [model] physics declares, and what of them a fit of plucks has options for.

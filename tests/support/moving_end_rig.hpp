@@ -204,9 +204,9 @@ template <rosin::FrictionLaw Law>
 /// What a transducer makes of a force: white noise and a converter of 16 bits.
 inline void record(std::vector<double>& force_N, double noise_N, double full_scale_N, unsigned seed) {
   std::mt19937_64 random{seed};
-  std::normal_distribution<double> gauss{0, noise_N};
+  std::normal_distribution<double> gauss;
   const double step = full_scale_N / 32768;
-  for (double& x : force_N) x = step * std::nearbyint((x + gauss(random)) / step);
+  for (double& x : force_N) x = step * std::nearbyint((x + noise_N * gauss(random)) / step);
 }
 
 }  // namespace test

@@ -16,13 +16,13 @@ inline constexpr double pickup_rate_Hz = 44100;
 /// A plucked string on one pickup; glide: relative sharpness at the start, gone at 5 per second.
 inline std::vector<double> plucked(double f0, double b, double noise, unsigned seed, double glide = 0) {
   std::mt19937_64 random{seed};
-  std::normal_distribution<double> gauss{0, noise};
+  std::normal_distribution<double> gauss;
   std::uniform_real_distribution<double> phase{0, 6.28};
   std::vector<double> x(66150), offset(41);
   for (double& o : offset) o = phase(random);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double t = static_cast<double>(i) / pickup_rate_Hz - 0.1;
-    x[i] = gauss(random);
+    x[i] = noise * gauss(random);
     if (t < 0) continue;
     const double warped = t + glide * (1 - std::exp(-5 * t)) / 5;
     for (int n = 1; n <= 25; ++n) {

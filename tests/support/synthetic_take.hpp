@@ -42,7 +42,7 @@ inline void add_mode(const pluck& p, int n, double weight, std::size_t first, st
 /// near and far in newtons.
 inline std::vector<std::vector<double>> pluck_forces(const pluck& p) {
   std::mt19937_64 random{p.seed};
-  std::normal_distribution<double> noise{0, p.noise_N};
+  std::normal_distribution<double> noise;
   const auto frames = static_cast<std::size_t>(p.duration_s * p.rate_Hz);
   const auto first = std::min(frames, static_cast<std::size_t>(std::ceil(p.release_s * p.rate_Hz)));
   std::vector<std::vector<double>> out(2, std::vector<double>(frames, 0.0));
@@ -53,8 +53,8 @@ inline std::vector<std::vector<double>> pluck_forces(const pluck& p) {
   const int modes = static_cast<int>(0.4 * p.rate_Hz / p.fundamental_Hz);
   for (int n = 1; n <= modes; ++n) add_mode(p, n, std::pow(std::cos(1.5707963267948966 * n / (modes + 1)), 2), first, out);
   for (std::size_t i = 0; i < frames; ++i) {
-    out[0][i] = p.near_gain * out[0][i] + noise(random);
-    out[1][i] = p.far_gain * out[1][i] + noise(random);
+    out[0][i] = p.near_gain * out[0][i] + p.noise_N * noise(random);
+    out[1][i] = p.far_gain * out[1][i] + p.noise_N * noise(random);
   }
   return out;
 }

@@ -56,6 +56,8 @@ cp out.txt leaky.json
 holds leaky.json "$explained" "$improved" '$m->{effect} eq "channel-crosstalk"' 'about(value("fraction"), 0.02, 0.005)' \
   'abs(value("fraction") - 0.02) < ($m->{parameters}{fraction}{ci95}[1] - $m->{parameters}{fraction}{ci95}[0])'
 expect 0 validate leaky.json
+expect 2 diagnose leaky --without gremlins
+says "gremlins"
 
 # Nothing is missing, and there is a single pluck.
 make plain short
@@ -79,6 +81,25 @@ says "pluck-1 contradicts the other plucks: 5 samples are missing in it"
 holds cut.json "$explained" '$m->{effect} eq "dropouts" && value("samples") == 5' 'about(value("time_s"), 700 / 16000, 0.05)' '$d->{mismatch}{take} eq "pluck-1"' \
   '$d->{fit}{before} > 10 * $d->{fit}{noise_floor} && $d->{fit}{after} < 1.3 * $d->{fit}{noise_floor}'
 expect 0 validate cut.json
+
+# Where every pluck lost samples, what they are before that is fitted; so many are lost, not all from the first to the last of them.
+make lost short
+blank_frames() { # FILE FIRST COUNT…
+  perl -e 'my $name = shift; local $/; open my $f, "+<:raw", $name or die; my $all = <$f>;
+    while (my ($first, $count) = splice @ARGV, 0, 2) { substr($all, 44 + 4 * $first, 4 * $count) = "\0" x (4 * $count) }
+    seek $f, 0, 0; print $f $all' "$@"
+}
+blank_frames lost/pluck-1.wav 1450 9 1530 11
+blank_frames lost/pluck-2.wav 1500 8
+blank_frames lost/pluck-3.wav 1400 15
+expect 0 diagnose lost --json lost.json
+says "pluck-2: as no pluck is whole, used until it lost samples, 0.0927 s"
+holds lost.json '$d->{verdict} eq "explained" && @{$d->{missing}} == 6' '!grep { $_->{effect} ne "dropouts" } @{$d->{missing}}' \
+  'value("samples") == 20' 'about(value("time_s"), 1450 / 16000, 1e-3)' '$d->{fit}{after} < 1.3 * $d->{fit}{noise_floor}'
+expect 0 validate lost.json
+for n in 1 2 3; do blank_frames lost/pluck-$n.wav 600 9; done
+expect 2 diagnose lost
+says "lost/rig.toml: no pluck to compare with" "samples were lost"
 
 # One of three plucks is of another string, so that nothing rings as declared together: it is that one, and the others are told.
 make other short

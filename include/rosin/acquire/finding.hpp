@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct finding {
   std::string take, channel;  ///< channel is empty where the take as a whole is meant
   double start_s = 0, end_s = 0;
   std::string what, advice;
+  std::size_t samples = 0;  ///< so many of those from start to end are meant; 0: not counted
 };
 
 [[nodiscard]] inline bool has_error(const std::vector<finding>& findings) noexcept {

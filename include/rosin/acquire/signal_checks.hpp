@@ -83,6 +83,7 @@ inline void report_spans(take_check& out, const take_signals& from, const std::s
           what + ": " + std::to_string(samples) + " samples in " + std::to_string(spans.size()) + " place(s), first at sample " +
               std::to_string(spans.front().first),
           advice);
+  out.findings.back().samples = samples;
 }
 
 [[nodiscard]] inline channel_check figures_of(const take_signal& s) {

@@ -100,7 +100,7 @@ std::size_t each_field(std::string_view line, Use use) {
     std::string_view text = line;
     if (number == 1 && text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     if (detail::trimmed(text).empty() && data.columns.size() != 1) continue;  // of one column, an empty line is a row
-    if (text.front() == '#') {
+    if (text.starts_with('#')) {
       data.comments.emplace_back(detail::trimmed(text.substr(1)));
     } else if (data.columns.empty()) {
       detail::each_field(text, [&](std::size_t, std::string_view field) { data.add(std::string{field}, {}); });

@@ -75,6 +75,7 @@ TEST_CASE("clipping and dropouts are errors with their time and place") {
   const auto dropped = check(lost);
   REQUIRE(dropped.found("dropouts"));
   CHECK(dropped.findings[0].start_s == test::approx(0.5).epsilon(1e-3));
+  CHECK(dropped.findings[0].samples == 41);  // and the one that they repeat
 }
 
 TEST_CASE("silence is an error in a take that should sound, a warning in a quiet one") {

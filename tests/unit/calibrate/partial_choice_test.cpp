@@ -16,12 +16,12 @@ constexpr double baseband_rate_Hz = 160;
 
 std::vector<complex> drawn_lines(bool second, double noise) {
   std::mt19937_64 random{11};
-  std::normal_distribution<double> gauss{0, noise};
+  std::normal_distribution<double> gauss;
   std::vector<complex> z;
   for (int j = 0; j < 480; ++j) {
     const double t = j / baseband_rate_Hz;
     z.push_back(std::exp(complex(-1.2, 9) * t) + (second ? 0.6 * std::exp(complex(-0.4, 15) * t) : 0.0) +
-                complex(gauss(random), gauss(random)));
+                complex(noise * gauss(random), noise * gauss(random)));
   }
   return z;
 }

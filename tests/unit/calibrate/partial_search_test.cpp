@@ -13,13 +13,13 @@ namespace {
 
 std::vector<double> stiff_tone(double f0, double b, double noise) {
   std::mt19937_64 random{4};
-  std::normal_distribution<double> gauss{0, noise};
+  std::normal_distribution<double> gauss;
   std::vector<double> x(44100);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double t = static_cast<double>(i) / 44100;
     for (int n = 1; n <= 20; ++n)
       x[i] += std::exp(-(1 + 0.1 * n) * t) / n * std::cos(2 * std::numbers::pi * n * f0 * std::sqrt(1 + b * n * n) * t + n);
-    x[i] += gauss(random);
+    x[i] += noise * gauss(random);
   }
   return x;
 }

@@ -51,7 +51,7 @@ inline rosin::pluck_take scene_pluck(const rosin::pluck_layout& layout, const st
   take.rate_Hz = rate, take.strength_N = 1, take.position = 0.3;
   const std::size_t frames = 8000;
   std::mt19937_64 random{seed};
-  std::normal_distribution<double> noise{0, noise_N};
+  std::normal_distribution<double> noise;
   for (auto& x : take.force_N) x.assign(frames, 0.0);
   const auto first = static_cast<std::size_t>(std::ceil(model.release_s(v, which) * rate));
   for (std::size_t part = 0; part < 2; ++part) {
@@ -63,7 +63,7 @@ inline rosin::pluck_take scene_pluck(const rosin::pluck_layout& layout, const st
           take.force_N[c][i] += (line.residue[c] * std::exp(line.pole * (static_cast<double>(i - begin) / rate))).real();
   }
   for (auto& x : take.force_N)
-    for (double& y : x) y += noise(random);
+    for (double& y : x) y += noise_N * noise(random);
   return take;
 }
 

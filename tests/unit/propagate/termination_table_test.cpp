@@ -14,10 +14,10 @@ const rosin::modal_termination body{
 /// What a hammer and a laser would write down, up to `to_Hz`.
 std::vector<rosin::measured_admittance> measured(double from_Hz, double to_Hz, double step_Hz, double noise = 0) {
   std::mt19937 random{1};
-  std::normal_distribution<double> gauss{0, noise};
+  std::normal_distribution<double> gauss;
   std::vector<rosin::measured_admittance> table;
   for (double f = from_Hz; f <= to_Hz; f += step_Hz)
-    table.push_back({f, body.relative_admittance(f) / Z + std::complex<double>(gauss(random), gauss(random))});
+    table.push_back({f, body.relative_admittance(f) / Z + noise * std::complex<double>(gauss(random), gauss(random))});
   return table;
 }
 

@@ -82,7 +82,7 @@ TEST_CASE("sticking, the surface moves with the rod; slipping, the force lies on
     slip[n] = take->centre_velocity_m_s[n] + take->torsion_velocity_m_s[n] - take->rod_velocity_m_s[n];
   for (std::size_t n = 3000; n + 6 < slip.size(); ++n) {
     stuck += std::abs(slip[n]) < 5e-3 ? 1U : 0U;
-    if (*std::max_element(&slip[n - 6], &slip[n + 7]) > -0.4) continue;
+    if (*std::max_element(slip.data() + n - 6, slip.data() + n + 7) > -0.4) continue;
     ++slid;  // for long enough for the low-pass to have settled, and fast enough for the curve to be flat
     CHECK(take->contact_force_N[n] / 0.3 == test::approx(curve(-slip[n]).value).epsilon(0.1));
   }
