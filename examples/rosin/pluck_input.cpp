@@ -23,6 +23,8 @@ std::optional<rosin::pluck_take> pluck_of(const rosin::rig& rig, const rosin::ta
   return out;
 }
 
+std::string left_out(const std::string& take) { return take + ": left out for the error above"; }
+
 /// Until when a take with errors can be used: where they are lost samples and nothing else, until shortly before the first.
 std::optional<double> sound_until_s(const checked_take& read) {
   constexpr double aside = 16;  // samples
@@ -43,12 +45,15 @@ struct begun_pluck {
   bool held_out = false;
 };
 
-/// Where no pluck is whole, what those are before they lost samples, if that is long enough to ring in.
+/// Where no pluck to be fitted is whole, what those are before they lost samples, if that is long enough to ring in.
 void use_beginnings(std::vector<begun_pluck> begun, double fundamental_Hz, rig_plucks& out) {
   constexpr double least_periods = 20;
-  if (!out.takes.empty() || !out.held_out.empty()) return;
+  const bool needed = out.takes.empty();
   for (begun_pluck& b : begun) {
-    if (b.until_s * fundamental_Hz < least_periods) continue;
+    if (!needed || b.until_s * fundamental_Hz < least_periods) {
+      out.warnings.push_back(left_out(b.take.name));
+      continue;
+    }
     for (auto& channel : b.take.force_N) channel.resize(static_cast<std::size_t>(b.until_s * b.take.rate_Hz));
     out.warnings.push_back(b.take.name + ": as no pluck is whole, used until it lost samples, " + in_digits(b.until_s, "%.4f") +
                            " s");
@@ -80,8 +85,8 @@ rig_plucks read_plucks(const rosin::rig& rig, provenance& from) {
     bar.step();
     const auto read = read_telling(rig, take, from, out.warnings);
     const bool sound = read && !rosin::has_error(read->check.findings);
-    if (read && !sound) out.warnings.push_back(take.name + ": left out for the error above");
     const auto until_s = read && !sound ? sound_until_s(*read) : std::nullopt;
+    if (read && !sound && !until_s) out.warnings.push_back(left_out(take.name));
     auto pluck = sound || until_s ? pluck_of(rig, take, *read, out.warnings) : std::nullopt;
     if (!pluck || until_s) out.incomplete = true;
     if (pluck && until_s) begun.push_back({*std::move(pluck), *until_s, take.hold_out});

@@ -4,8 +4,9 @@
 // Noise of sensors and amplifiers grows towards low frequencies, far beyond the white noise that every fit weighs recordings by:
 // held forces and first periods then seem to tell what they do not. Below the pitch nothing of a string rings. So what a model
 // leaves there, of all of a recording, is taken out where it is noise: well above the white noise at most frequencies, there to
-// the end as at the beginning (what a pluck brings about dies away), in every take, and no stronger after strong plucks than after
-// weak ones; and between the first partials, too, as far up as there is more than white noise. A line that stands out stays: that is hum.
+// the end as at the beginning (what a pluck brings about dies away), in every take, no stronger after strong plucks than after weak
+// ones, and not the foot of what is left at the partials; and between the first partials, too, as far up as there is more than white
+// noise. A line that stands out stays: that is hum.
 //
 //     slow(n) = sum_k c_k cos(pi k (n + 1/2) / N),   k = 1 ... 2 N f_edge / rate
 //
@@ -14,6 +15,8 @@
 #include <rosin/diagnose/pluck_judgement.hpp>
 #include <rosin/math/fft.hpp>
 #include <rosin/math/median.hpp>
+
+#include <numeric>
 
 namespace rosin {
 
@@ -53,7 +56,8 @@ public:
     }
   }
 
-  /// Of the waves in a gap (0: below the pitch, 1: between the first partials, ...): power over what white noise would give it.
+  /// Of the waves in a gap (0: below the pitch, 1: between the first partials, ..., -1: at any partial): power over what white noise
+  /// would give it.
   [[nodiscard]] std::vector<double> over(double noise_N, Eigen::Index channel, int gap) const {
     std::vector<double> out;
     for (Eigen::Index k = 0; k < content_.rows(); ++k)
@@ -122,7 +126,7 @@ struct slow_noise {
 
 [[nodiscard]] inline slow_noise slow_noise_of(std::vector<slow_rest> rests, const std::vector<pluck_take>& takes, double noise_N,
                                               Eigen::Index channel) {
-  constexpr double white_median = 0.455, much = 3, least_late = 0.2;
+  constexpr double white_median = 0.455, much = 3, least_late = 0.2, foot = 10;
   slow_noise found;
   std::array<double, 2> beside_pitch{1, 1};  // below and above
   for (; found.gaps < slow_rest::most_partials; ++found.gaps) {
@@ -139,6 +143,13 @@ struct slow_noise {
   }
   found.over = (beside_pitch[0] + beside_pitch[1]) / 2;
   if (found.gaps == 0) return {};
+  std::vector<double> at_partials;
+  for (const slow_rest& r : rests) {
+    const auto one = r.over(noise_N, channel, -1);
+    at_partials.insert(at_partials.end(), one.begin(), one.end());
+  }
+  const double ringing = std::accumulate(at_partials.begin(), at_partials.end(), 0.0);
+  if (ringing > foot * found.over * static_cast<double>(at_partials.size())) return {};
   double early = 0, late = 0;
   std::vector<double> power;
   for (slow_rest& r : rests) {

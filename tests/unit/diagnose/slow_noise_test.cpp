@@ -73,6 +73,10 @@ TEST_CASE("slow noise: below the pitch it goes, white noise stays as it is" * do
   // What a fit leaves of one take alone is not the sensors'.
   noisy.data.takes[0] = white[0];
   CHECK_FALSE(rosin::without_slow_noise(noisy, held));
+  // Nor is what a wrong pitch leaves at the partials and at their feet.
+  auto sharp = *plain;
+  sharp.best.value[0] *= 1.0005;
+  CHECK_FALSE(rosin::without_slow_noise(sharp, {}));
 }
 
 TEST_CASE("slow noise: a string as declared is left alone in it, and a wire that lets go slowly named all the same" *
