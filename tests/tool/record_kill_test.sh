@@ -1,10 +1,11 @@
-# rosin record, killed at random moments: the take can be read, every sample is right, at most the last 0.1 s is missing, and
-# the rig file is whole. ROSIN_KILLS says how often (50 for a thorough look).
+# rosin record, killed at random moments: the take can be read, every sample is right, at most the last 0.1 s of what it had read
+# is missing, and the rig file is whole. The first is killed while it starts, when what had waited for it may be missing, too.
+# ROSIN_KILLS says how often (50 for a thorough look).
 . "$ROSIN_SOURCE/tests/tool/common.sh"
 make_rig described
 rate=48000
 
-# Numbered frames n, -n at the pace of the clock; how many have been handed over stands in the file `handed`.
+# Numbered frames n, -n at the pace of the clock; how many of them have been read out of the pipe stands in the file `handed`.
 feed() {
   perl -MTime::HiRes=time,sleep -e '
     $SIG{PIPE} = sub { exit };
@@ -19,9 +20,20 @@ feed() {
         $sent += $done;
       }
       $at += $block;
+      my $waiting = pack("i", 0);
+      ioctl(STDOUT, 0x541B, $waiting) or die "FIONREAD: $!\n";
       sysseek($log, 0, 0);
-      syswrite($log, sprintf("%012d", $at));
+      syswrite($log, sprintf("%012d", $at - unpack("i", $waiting) / 8));
     }'
+}
+
+# Half a minute at most, until a file is there.
+wait_for() {
+  for _ in $(seq 1500); do
+    [ -e "$1" ] && return
+    sleep 0.02
+  done
+  echo "FAILED: $1 has not come" && failures=$((failures + 1))
 }
 
 worst=0
@@ -30,20 +42,24 @@ for trial in $(seq "${ROSIN_KILLS:-4}"); do
   mkfifo fifo
   feed >fifo & feeder=$!
   "$tool" record rig --like described --source - --bare --bits 32 --rate $rate --kind quiet <fifo >out.txt 2>err.txt & recorder=$!
-  sleep "$(perl -e 'srand($$ + $ARGV[0]); printf "%.4f", 0.15 + rand(1.2)' "$trial")"
-  handed=$(cat handed)
+  if [ "$trial" -gt 1 ]; then wait_for rig/rig.toml; fi
+  sleep "$(perl -e 'srand($$ + $ARGV[0]); printf "%.4f", rand($ARGV[0] > 1 ? 1.2 : 0.3)' "$trial")"
+  handed=$(cat handed 2>/dev/null) || true
+  handed=${handed:-0}
   { kill -9 $recorder; wait $recorder; wait $feeder; } 2>/dev/null || true
   missing=$(perl -e '
     my ($handed) = @ARGV;
-    open(my $in, "<:raw", "rig/quiet-1.wav") or die "no take\n";
+    my $take = "rig/quiet-1.wav";
+    if (!-s $take) { print $handed; exit }
+    open(my $in, "<:raw", $take) or die "no take\n";
     local $/; my $bytes = <$in>;
     substr($bytes, 0, 4) eq "RIFF" or die "no header\n";
     my @x = unpack("l<*", substr($bytes, 104));
     for my $i (0 .. @x / 2 - 1) { die "frame $i is $x[2*$i], $x[2*$i+1]\n" if $x[2 * $i] != $i || $x[2 * $i + 1] != -$i }
     print $handed - int(@x / 2)' "$((10#$handed))") || failures=$((failures + 1))
-  [ "${missing:-99999}" -le $((rate / 10)) ] || { echo "FAILED: kill $trial: $missing of $handed frames are missing"; failures=$((failures + 1)); }
+  [ "$trial" = 1 ] && [ "${missing:-none}" != none ] || [ "${missing:-99999}" -le $((rate / 10)) ] || { echo "FAILED: kill $trial: $missing of $handed frames are missing"; failures=$((failures + 1)); }
   [ "${missing:-0}" -le "$worst" ] || worst=$missing
-  expect 0 check rig
+  if [ "$trial" -gt 1 ] || [ -e rig/rig.toml ]; then expect 0 check rig; fi
 done
 echo "at most $worst frames, $(perl -e "printf '%.3f', $worst / $rate") s, were missing"
 
