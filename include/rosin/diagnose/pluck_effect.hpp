@@ -78,8 +78,6 @@ struct pluck_effect {
   std::string beside{};          ///< id of an effect without which this one is the same as another
   /// index of a parameter that makes less and less of the effect, though not in proportion; -1: none does
   int shrinks_with = -1;
-  /// What a channel gives at a take's beginning depends on what came before, which is its own: its offset is no other take's.
-  bool remembers = false;
 
   [[nodiscard]] std::string id() const {
     static constexpr const char* places[] = {"near", "far"};

@@ -199,7 +199,6 @@ inline pluck_effect ac_coupling_effect(const string_facts&) {
                  .strength = -1,
                  .apply = [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
   e.shrinks_with = 0;
-  e.remembers = true;
   e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
     for (std::size_t t = 0; t < layout.takes(); ++t)
       for (std::size_t c = 0; c < 2; ++c)

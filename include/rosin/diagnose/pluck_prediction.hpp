@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What a fit of plucks leaves: where it shows, how well takes that were not fitted are predicted (of them only the instant of
-// release and the strength are free, what a high-pass remembers of the time before, and where no other was made at that place the
-// place, within what a notebook tells of it and of the nearest other), and whether what rings is noisier than what was held.
+// release, the strength and the sensors' zeros are free, and where no other was made at that place the place, within what a
+// notebook tells of it and of the nearest other), and whether what rings is noisier than what was held.
 //
 #pragma once
 
@@ -75,7 +75,7 @@ inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, doub
 /// A take that was not fitted, by the model of those that were.
 struct seen_take {
   scene_data data;  ///< the take by itself
-  scene_fit fit;    ///< release and strength were free
+  scene_fit fit;    ///< release, strength and the sensors' zeros were free
   fit_stage stage;  ///< what was looked at in the end
 
   [[nodiscard]] line_problem<scene_plucks> problem() const { return data.problem(fit.effects, fit.value, stage, {1, 1}); }

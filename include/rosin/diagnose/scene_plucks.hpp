@@ -64,8 +64,8 @@ private:
 }
 
 /// Which parameters a fit moves. Corrections: late parameters, and how far declared terminations are off. Of a take that is only
-/// predicted, release and strength alone; its place, where none of those that were fitted was made there; and the offset that a
-/// high-pass remembers, as nobody knows for how long the string had been held.
+/// predicted, what is its own - release, strength, and the sensors' zeros, which creep from take to take and remember, behind a
+/// high-pass, for how long the string had been held - and its place, where none of those that were fitted was made there.
 enum class freedom { all, no_corrections, release_only, release_and_place };
 
 class scene_plucks : public pluck_layout {
@@ -92,9 +92,7 @@ public:
     if (free_ == freedom::release_only || free_ == freedom::release_and_place) {
       if (p >= plain_size()) return added(p).take >= 0;
       if (p < at(0, 0)) return p >= first_position && free_ == freedom::release_and_place;
-      const Eigen::Index mine = (p - at(0, 0)) % take_size;
-      return p < first_of_ends() &&
-             (mine <= static_cast<Eigen::Index>(strength) || remembers(static_cast<std::size_t>(mine - offset_near)));
+      return p < first_of_ends();
     }
     if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_ends())) return false;
     return p >= plain_size() ? !added(p).by_score : pluck_layout::is_free(p);
@@ -167,11 +165,6 @@ public:
   }
 
 private:
-  /// A high-pass, declared or found.
-  [[nodiscard]] bool remembers(std::size_t channel) const {
-    return corner_Hz_[channel] > 0 ||
-           std::any_of(effects_.begin(), effects_.end(), [](const pluck_effect& e) { return e.remembers; });
-  }
   /// What the poles depend on.
   [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v, const pluck_scene& s) const {
     const Eigen::Index more = v.size() - first_of_ends();
