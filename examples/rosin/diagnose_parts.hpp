@@ -26,6 +26,7 @@ struct diagnosed_stroke {
   rosin::reconstruction_uncertainty sd;
   double force_sd_N = 0, velocity_sd_m_s = 0, delta = 0;  ///< in the middle of the take; Eq. (12)
   double level_sd_N = 0;                                  ///< of the mean force, where it was lost and is estimated
+  std::optional<double> own_place{};                      ///< if that is not where the plucks were
 };
 
 /// The plucks to fit and to keep aside, what is known before, and what the declared model already holds.
@@ -56,6 +57,8 @@ bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const
              rig_diagnosis& d);
 /// Samples that the checks found lost in any take; such a take is in no fit.
 void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, provenance& from, rig_diagnosis& d);
+/// How far from its declared place (fraction of the length) a pluck may be found without a word.
+[[nodiscard]] double tolerated_offset(const rosin::rig_values& values);
 /// Plucks that were made clearly elsewhere than declared.
 void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, rig_diagnosis& d);
 

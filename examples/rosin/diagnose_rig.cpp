@@ -248,6 +248,10 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     }
     step();
     add_lost_levels(rig, p, strokes);
+    for (const auto& s : strokes)
+      if (s.own_place)
+        d.assumed.push_back(s.name + ": bowed at " + in_digits(*s.own_place, "%.4f") +
+                            " of the length, where its two versions part least, not where the plucks were");
     for (const auto& line : approaches_of(rig, strokes, p)) d.assumed.push_back(line);
     const rig_diagnosis before = d;
     contact_open = !examine_contact(rig, strokes, p, rise, without, d);

@@ -5,11 +5,14 @@
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
+#include <rosin/diagnose/stroke_place.hpp>
 #include <rosin/reconstruct/dc_level.hpp>
 
 namespace tool {
 
 namespace {
+
+constexpr double least_place_sd = 0.001;  // fraction of the length
 
 /// The fit with all that was found, as a plain calibration of the string.
 rosin::calibration calibration_with(const rosin::pluck_diagnosis& p, double declared, const rosin::rig_values& values) {
@@ -64,6 +67,22 @@ void add_means_and_doubts(diagnosed_stroke& s, const rosin::band& limits) {
   s.delta = rosin::consistency_delta(s.motion.force_near_N, s.motion.force_far_N);
 }
 
+/// Where a stroke was made, if not where the plucks were: nearby, or where both were declared, if the plucks were clearly elsewhere.
+/// Nothing where another tension accounts for how its versions part, or neither does.
+std::optional<double> own_place(const diagnosed_stroke& s, double declared, const rosin::rig_values& values,
+                                const rosin::pluck_diagnosis& plucks, const std::function<double(double)>& parting) {
+  constexpr double over_noise = 3, share = 0.3, of_drift = 0.7;
+  if (!(s.delta > over_noise * parting_by_noise(s))) return std::nullopt;
+  // either place may be off by the tolerance, which is two standard deviations
+  const double doubt = 4 * std::max(least_place_sd, values.position ? values.position->sd : 0.0),
+               plucked = s.calibration.position;
+  rosin::stroke_place best = rosin::search_stroke_place(parting, plucked, doubt);
+  if (std::abs(plucked - declared) > tolerated_offset(values))
+    if (const auto there = rosin::search_stroke_place(parting, declared, doubt); there.delta < best.delta) best = there;
+  if (!(best.delta < share * s.delta) || !(best.delta < of_drift * drift_of({s}, plucks).delta_after)) return std::nullopt;
+  return best.position;
+}
+
 }  // namespace
 
 std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values,
@@ -83,14 +102,27 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
     }
     const double rate = read->signals.sample_rate_Hz;
     const rosin::band limits = band.value_or(rosin::band{0.30 * rate, 0.45 * rate});
-    diagnosed_stroke s = recorded_stroke(
-        take, read->signals, rosin::at_tension(calibration_with(plucks, *position, values), tension_drift), plucks, limits);
-    s.motion = motion_of(s, scene, limits);
+    const rosin::calibration plucked = rosin::at_tension(calibration_with(plucks, *position, values), tension_drift);
+    const auto made_at = [&](double place) {
+      diagnosed_stroke s = recorded_stroke(take, read->signals, rosin::at_place(plucked, place), plucks, limits);
+      s.motion = motion_of(s, scene, limits);
+      return s;
+    };
+    diagnosed_stroke s = made_at(plucked.position);
     if (s.motion.known.end <= s.motion.known.begin + 500) {
       warnings.push_back(take.name + ": left out: too short");
       continue;
     }
     add_means_and_doubts(s, limits);
+    const auto own = own_place(s, *position, values, plucks, [&](double place) {
+      const auto motion = made_at(place).motion;
+      return rosin::consistency_delta(motion.force_near_N, motion.force_far_N);
+    });
+    if (own) {
+      s = made_at(*own);
+      s.own_place = own;
+      add_means_and_doubts(s, limits);
+    }
     out.push_back(std::move(s));
   }
   return out;

@@ -125,13 +125,16 @@ void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& p, prove
   }
 }
 
-void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
+double tolerated_offset(const rosin::rig_values& values) {
   constexpr double least = 0.02, clearly = 6;
-  const double allowed = std::max(least, values.position ? clearly * values.position->sd : 0.0);
+  return std::max(least, values.position ? clearly * values.position->sd : 0.0);
+}
+
+void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
   for (std::size_t t = 0; t < p.data.takes.size(); ++t) {
     const Eigen::Index at = p.data.layout.position(t);
     const double declared = p.data.takes[t].position, found = p.best.value[at];
-    if (!(std::abs(found - declared) > allowed)) continue;
+    if (!(std::abs(found - declared) > tolerated_offset(values))) continue;
     d.missing.push_back(made_at({}, found, p.best.sd[at], declared));
     if (!d.take.empty()) return;
     rosin::scene_fit as_declared = p.best;

@@ -231,6 +231,7 @@
 #include <rosin/diagnose/string_poles.hpp>
 #include <rosin/diagnose/string_response.hpp>
 #include <rosin/diagnose/string_side.hpp>
+#include <rosin/diagnose/stroke_place.hpp>
 #include <rosin/diagnose/strong_starts.hpp>
 #include <rosin/diagnose/sympathetic_effect.hpp>
 #include <rosin/diagnose/tension_drift.hpp>
