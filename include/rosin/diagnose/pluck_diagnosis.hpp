@@ -50,7 +50,7 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   std::tie(d, least_noise) = searched(d, catalogue_for(*declared), most_effects);
   drop_what_is_not_predicted(d, held, least_noise);
   const seen_noise still = noise_before_release(d.data, d.best);
-  const bool modulated = is_noisier(d.best.quality.noise, still);
+  const bool modulated = is_noisier(d.best.quality.noise, still, least_temper > 1);
   const double noise = modulated ? rms_of(still.rms_N) : least_noise;
   d.mismatch = locate(d.data, d.base, noise);
   const auto& judged = held.empty() ? takes : held;
