@@ -1,5 +1,6 @@
 # rosin record, killed at random moments: the take can be read, every sample is right, at most the last 0.1 s of what it had read
-# is missing, and the rig file is whole. The first is killed while it starts, when what had waited for it may be missing, too.
+# is missing, and the rig file is whole. The first is killed while it starts, when what a pipe holds
+# may be missing, too.
 # ROSIN_KILLS says how often (50 for a thorough look).
 . "$ROSIN_SOURCE/tests/tool/common.sh"
 make_rig described
@@ -57,7 +58,9 @@ for trial in $(seq "${ROSIN_KILLS:-4}"); do
     my @x = unpack("l<*", substr($bytes, 104));
     for my $i (0 .. @x / 2 - 1) { die "frame $i is $x[2*$i], $x[2*$i+1]\n" if $x[2 * $i] != $i || $x[2 * $i + 1] != -$i }
     print $handed - int(@x / 2)' "$((10#$handed))") || failures=$((failures + 1))
-  [ "$trial" = 1 ] && [ "${missing:-none}" != none ] || [ "${missing:-99999}" -le $((rate / 10)) ] || { echo "FAILED: kill $trial: $missing of $handed frames are missing"; failures=$((failures + 1)); }
+  most=$((rate / 10))
+  [ "$trial" -gt 1 ] || most=$((most + 65536 / 8))  # a pipe holds so much
+  [ "${missing:-99999}" -le "$most" ] || { echo "FAILED: kill $trial: $missing of $handed frames are missing"; failures=$((failures + 1)); }
   [ "${missing:-0}" -le "$worst" ] || worst=$missing
   if [ "$trial" -gt 1 ] || [ -e rig/rig.toml ]; then expect 0 check rig; fi
 done

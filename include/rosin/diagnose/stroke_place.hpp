@@ -8,12 +8,9 @@
 //
 #pragma once
 
-#include <rosin/calibrate/calibration.hpp>
-
-#include <boost/math/tools/minima.hpp>
+#include <rosin/diagnose/tension_drift.hpp>
 
 #include <cmath>
-#include <limits>
 
 namespace rosin {
 
@@ -35,14 +32,9 @@ template <class Delta>
 [[nodiscard]] stroke_place search_stroke_place(Delta&& delta, double around, double doubt) {
   constexpr double valley = 0.0005;  // is some times as wide
   const int steps = static_cast<int>(std::ceil(doubt / valley));
-  const double step = doubt / steps;
-  stroke_place least{around, delta(around)};
-  for (int k = -steps; k <= steps; ++k)
-    if (const double d = delta(around + k * step); d < least.delta) least = {around + k * step, d};
-  const auto [position, d] = boost::math::tools::brent_find_minima(delta, least.position - step, least.position + step,
-                                                                   std::numeric_limits<double>::digits / 2);
+  const auto [position, delta_there] = detail::least_around(delta, around, steps, doubt / steps);
   if (!(std::abs(position - around) < doubt)) return {position, 1};
-  return {position, d};
+  return {position, delta_there};
 }
 
 }  // namespace rosin

@@ -88,6 +88,20 @@ template <class Physics = full_physics>
   return out;
 }
 
+namespace detail {
+
+/// Where a function of one number is least, and what it is there: steps to either side of `middle`, then Brent's way around the best.
+template <class Function>
+[[nodiscard]] std::pair<double, double> least_around(Function&& f, double middle, int steps, double step) {
+  constexpr int bits = 20;
+  double start = middle, least = f(middle);
+  for (int k = -steps; k <= steps; ++k)
+    if (const double y = f(middle + k * step); y < least) least = y, start = middle + k * step;
+  return boost::math::tools::brent_find_minima(f, start - step, start + step, bits);
+}
+
+}  // namespace detail
+
 /// The same for any way to reconstruct: delta(take, relative) is Eq. (12) of a take at that tension. Searched within 6.4 %.
 template <class Delta>
 [[nodiscard]] tension_drift search_tension_drift(std::size_t takes, Delta&& delta) {
@@ -95,11 +109,9 @@ template <class Delta>
   std::vector<double> found;
   for (std::size_t t = 0; t < takes; ++t) {
     const auto at = [&](double relative) { return delta(t, relative); };
-    double start = 0, least = at(0);
-    out.delta_before += least * least;
-    for (int k = -16; k <= 16; ++k)  // the valley is about a hundredth wide
-      if (const double d = at(0.004 * k); d < least) least = d, start = 0.004 * k;
-    const auto [relative, after] = boost::math::tools::brent_find_minima(at, start - 0.004, start + 0.004, 20);
+    const double before = at(0);
+    out.delta_before += before * before;
+    const auto [relative, after] = detail::least_around(at, 0, 16, 0.004);  // the valley is about a hundredth wide
     out.delta_after += after * after;
     found.push_back(relative);
   }
