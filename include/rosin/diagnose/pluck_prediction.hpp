@@ -174,11 +174,11 @@ inline seen_noise noise_before_release(const scene_data& data, const scene_fit& 
 }
 
 /// What modulates partials - a clock that is not steady, bursts - passes for noise among the lines, but not before the release.
-/// By three tenths, and four standard deviations of what was seen there; by six tenths where slow noise was taken out, some of which
-/// stays at the partials and passes for a trend before the release.
+/// By three tenths, and four standard deviations of what was seen there; by four tenths where slow noise was taken out: some of it stays
+/// at the partials and passes for a trend before the release, so that the two scatter by a twelfth about 1.05 (seven strings as declared).
 [[nodiscard]] inline bool is_noisier(const std::array<double, 2>& ringing, const seen_noise& still, bool was_slow = false) {
   if (!(still.samples > 0)) return false;
-  const double much = std::max(was_slow ? 1.6 : 1.3, 1 + 4 / std::sqrt(2 * still.samples));
+  const double much = std::max(was_slow ? 1.4 : 1.3, 1 + 4 / std::sqrt(2 * still.samples));
   return ringing[0] > much * still.rms_N[0] || ringing[1] > much * still.rms_N[1];
 }
 

@@ -52,8 +52,8 @@ TEST_CASE("noisier is by three tenths, and by more where little was seen") {
   const rosin::detail::seen_noise well{{1e-3, 1e-3}, 600}, hardly{{1e-3, 1e-3}, 40};
   CHECK(rosin::detail::is_noisier({1e-3, 1.4e-3}, well));
   CHECK_FALSE(rosin::detail::is_noisier({1e-3, 1.1e-3}, well));
-  CHECK_FALSE(rosin::detail::is_noisier({1e-3, 1.4e-3}, well, true));
-  CHECK(rosin::detail::is_noisier({1e-3, 1.7e-3}, well, true));
+  CHECK_FALSE(rosin::detail::is_noisier({1e-3, 1.35e-3}, well, true));
+  CHECK(rosin::detail::is_noisier({1e-3, 1.45e-3}, well, true));
   CHECK_FALSE(rosin::detail::is_noisier({1e-3, 1.4e-3}, hardly));
   CHECK(rosin::detail::is_noisier({1.6e-3, 1e-3}, hardly));
 }
