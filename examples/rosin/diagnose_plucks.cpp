@@ -59,6 +59,12 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
     if (!odd) return failed(found.error(), plucks->warnings);
     return plucks_told{odd->others, std::move(odd)};
   }
+  const bool may_rattle = impedance > 0 && std::find(known.begin(), known.end(), "rattle") == known.end();
+  if (!found->explained && may_rattle)
+    if (auto all = rosin::find_rattling_string(plucks->takes, plucks->held, plucks->guess, plucks->options, impedance)) {
+      all->others.ranking = found->ranking;
+      return plucks_told{*std::move(found), std::move(all)};
+    }
   if (!found->explained)
     if (auto both = by_both(*plucks, catalogue)) {
       *found = *std::move(both);
@@ -66,11 +72,12 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
           "two plucks only: both were fitted, as one does not tell what depends on its strength; none was kept to judge by");
     }
   plucks_told out{*std::move(found), {}};
-  told.ends = out.found.data.layout.ends(out.found.best.value);
   if (out.found.explained) return out;
+  told.ends = out.found.data.layout.ends(out.found.best.value);
   out.odd = rosin::find_odd_pluck(plucks->takes, plucks->held, told, plucks->options, catalogue);
-  if (!out.odd && impedance > 0 && std::find(known.begin(), known.end(), "rattle") == known.end())
-    out.odd = rosin::find_rattling_plucks(plucks->takes, plucks->held, told, plucks->options, catalogue, impedance);
+  if (!may_rattle || (out.odd && (out.odd->lost || out.odd->moved || rosin::find_rattle(*out.odd, impedance)))) return out;
+  if (auto some = rosin::find_rattling_plucks(plucks->takes, plucks->held, told, plucks->options, catalogue, impedance))
+    out.odd = std::move(some);
   return out;
 }
 

@@ -194,6 +194,27 @@ std::optional<rig_diagnosis> wide_and_drifted(const rosin::rig& rig, const rosin
   return d;
 }
 
+/// Names of the strokes in which the string moves as far as the obstacle that was found: of Helmholtz motion
+/// v x (1 - x) / (2 f0 p) to either side at x, bowed at p.
+std::string strokes_that_rattle(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& p,
+                                const rig_diagnosis& d) {
+  constexpr double near_it = 0.7;  // friction holds the string aside besides
+  const auto rattle = std::find_if(d.missing.begin(), d.missing.end(), [](const auto& m) { return m.effect == "rattle"; });
+  if (rattle == d.missing.end() || !rattle->position) return {};
+  const double x = *rattle->position;
+  double gap_m = 0;
+  for (const auto& q : rattle->parameters)
+    if (q.name == "gap_m") gap_m = q.value;
+  std::string names;
+  for (const rosin::take& take : rig.takes) {
+    if (take.kind != rosin::take_kind::bow) continue;
+    const double bowed = rig.position_of(take).value_or(values.position ? values.position->value : 0.5);
+    if (take.speed_m_s && *take.speed_m_s * x * (1 - x) / (2 * p.best.value[0] * bowed) < near_it * gap_m) continue;
+    names += (names.empty() ? "" : ", ") + take.name;
+  }
+  return names;
+}
+
 void rank(rig_diagnosis& d) {
   // Each kind of evidence has its own data; what was found comes first, the rest follows in its order.
   double top = -1e300;
@@ -232,7 +253,10 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   std::vector<diagnosed_stroke> strokes;
   const bool plain_string = is_plain(p);
   bool contact_open = false;
-  if (p.explained && values.impedance_Ns_m) strokes = reconstruct_strokes(rig, values, p, 0, from, d.warnings);
+  const auto reaching = strokes_that_rattle(rig, values, p, d);
+  if (!reaching.empty())
+    d.assumed.push_back("the strokes were not examined: in " + reaching + " the string's motion reaches the obstacle as well");
+  else if (p.explained && values.impedance_Ns_m) strokes = reconstruct_strokes(rig, values, p, 0, from, d.warnings);
   else if (std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::bow; }))
     d.assumed.emplace_back("the strokes were not examined: the contact cannot be seen past what the plucks leave unexplained");
   step();

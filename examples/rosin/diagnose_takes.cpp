@@ -61,7 +61,11 @@ void add_cause(missing_effect m, rig_diagnosis& d) {
 
 std::string contradiction(const rosin::odd_pluck& odd) {
   std::string names = odd.take.name;
-  for (const rosin::pluck_take& take : odd.also) names += ", " + take.name;
+  const std::string& told_by = odd.others.data.takes[0].name;
+  bool all = false;  // the string is told by a pluck that is odd itself
+  for (const rosin::pluck_take& take : odd.also) names += ", " + take.name, all = all || take.name == told_by;
+  if (all)
+    return names + ": something acts on the string in each of them; it is told by what that leaves unchanged of " + told_by;
   const std::string out = names + (odd.also.empty() ? " contradicts" : " contradict") + " the other plucks: ";
   if (odd.lost) return out + in_digits(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
   const double others_Hz = odd.others.best.value[rosin::pluck_layout::fundamental],

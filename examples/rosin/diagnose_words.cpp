@@ -78,7 +78,7 @@ diagnosed_value in_si(const std::string& name, double v, double sd, const rosin:
                  per = values.impedance_Ns_m->value * 2 * L * f0 * L * L / (std::numbers::pi * std::numbers::pi);
     return with("bending_stiffness_Nm2", v * per, sd * per, e.stiffness);
   }
-  if (name == "mass_kg" || name == "resistance_Ns_m") return with(name.c_str(), v, sd, e.impedance);
+  if (name == "mass_kg" || name == "resistance_Ns_m" || name == "gap_m") return with(name.c_str(), v, sd, e.impedance);
   if (name == "axial_stiffness_N") return with(name.c_str(), v, sd, e.axial);
   if (name == "sensed_axial_stiffness_N") return with(name.c_str(), v, sd, e.sensed);
   if (name ==

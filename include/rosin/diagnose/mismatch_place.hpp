@@ -29,18 +29,25 @@ struct acting_place {
   double left = 1;                ///< share of the mismatch's power that nothing there explains
 };
 
+/// How far a nuisance is from what is known of it, and that knowledge's standard deviation; sd 0: nothing is known.
+struct nuisance_doubt {
+  double off = 0, sd = 0;
+};
+
 /// What the model leaves of a take's first part, and what moves with its nuisances: the same samples of both channels.
 struct unexplained_part {
   std::array<Eigen::VectorXd, 2> force_N;
   std::vector<std::array<Eigen::VectorXd, 2>> nuisances{};
   double rate_Hz = 0;
+  std::vector<Eigen::Index> parameters{};  ///< which these are
+  std::vector<nuisance_doubt> doubts{};    ///< one for each nuisance, or none
 };
 
 namespace detail {
 
 /// What a fit leaves of the ringing part of a take, and how it moves with every parameter that is free there.
 inline unexplained_part left_by(const line_problem<scene_plucks>& problem, const Eigen::VectorXd& v, std::size_t take) {
-  unexplained_part out{residual_of(problem, v, take), {}, problem.rate_Hz(take)};
+  unexplained_part out{residual_of(problem, v, take), {}, problem.rate_Hz(take), {}, {}};
   for (Eigen::Index p = 0; p < problem.model().size(); ++p) {
     if (!problem.model().is_free(p) || !problem.model().concerns(p, take)) continue;
     const double h = problem.model().step(p, v);
@@ -49,6 +56,7 @@ inline unexplained_part left_by(const line_problem<scene_plucks>& problem, const
     auto moved = residual_of(problem, up, take);
     for (std::size_t c = 0; c < 2; ++c) moved[c] = (moved[c] - out.force_N[c]) / h;
     out.nuisances.push_back(std::move(moved));
+    out.parameters.push_back(p);
   }
   return out;
 }
@@ -81,6 +89,7 @@ public:
     // of one channel
     noise_power_ = static_cast<double>(bins_.size()) * line_.weighted_samples() / (line_.rate_Hz * line_.rate_Hz);
     alike_ = std::max(1.0, faded / static_cast<double>(stride));
+    doubts_ = left.doubts;
   }
 
   /// The place that leaves least.
@@ -90,18 +99,37 @@ public:
     for (const acting on : {acting::near_end, acting::far_end, acting::near_channel, acting::far_channel})
       if (const double l = across(on, 0) / power_; l < best.left)
         best = {on, on == acting::far_end || on == acting::far_channel ? 1.0 : 0.0, 0, l};
-    constexpr int grid = 64;
-    std::array<double, grid> cost{};
-    for (int i = 1; i < grid; ++i) cost[static_cast<std::size_t>(i)] = across(acting::on_string, static_cast<double>(i) / grid);
-    const auto low = static_cast<int>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
-    const acting_place found = refined(static_cast<double>(low - 1) / grid, static_cast<double>(low + 1) / grid);
+    const acting_place found = on_string();
     return found.left < best.left ? found : best;
+  }
+  /// The same of places on the string, between two of them.
+  [[nodiscard]] acting_place on_string(double from = 0, double to = 1) const {
+    constexpr int grid = 64;
+    const int first = 1 + static_cast<int>(from * grid), last = static_cast<int>(to * grid) - 1;
+    int low = first;
+    double least = 1e300;
+    for (int i = first; i <= last; ++i)
+      if (const double l = across(acting::on_string, static_cast<double>(i) / grid); l < least) least = l, low = i;
+    return refined(static_cast<double>(low - 1) / grid, static_cast<double>(low + 1) / grid);
   }
 
   /// How much of each nuisance is in what is left, the action at that place taken out.
   [[nodiscard]] Eigen::VectorXd nuisances(const acting_place& at) const {
     const auto [left, moved] = parts_across(at.on, at.position);
     return fitted(left, moved);
+  }
+  /// Power across the shares of a place, nuisances as they are and as far as they are from what is known of them, over noise.
+  [[nodiscard]] double misfit(const acting_place& at) const {
+    return parts_across(at.on, at.position).first.squaredNorm() / noise_power_;
+  }
+  /// Their covariance, noise being all that lies across.
+  [[nodiscard]] Eigen::MatrixXd covariance(const acting_place& at) const {
+    const Eigen::MatrixXd moved = parts_across(at.on, at.position).second;
+    const Eigen::VectorXd scale = moved.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+    const Eigen::MatrixXd unit = moved * scale.asDiagonal();
+    Eigen::MatrixXd normal = unit.transpose() * unit;
+    normal.diagonal().array() += 1e-10;
+    return row_variance() * (scale.asDiagonal() * normal.inverse() * scale.asDiagonal());
   }
   /// There is more than noise, which is taken for white.
   [[nodiscard]] bool is_mismatch() const { return 2 * noise_power_ < most_noise * power_; }
@@ -142,11 +170,16 @@ private:
     return {seen[0] * sure_[0], seen[1] * sure_[1]};
   }
 
+  /// Of the noise in one row of parts_across(), as if neighbours did not tell the same.
+  [[nodiscard]] double row_variance() const { return 0.5 * alike_ * noise_power_ / static_cast<double>(bins_.size()); }
+
   /// What lies across the shares of a place: of the mismatch, and of each nuisance (a column each); real parts, then imaginary
-  /// ones.
+  /// ones, then what is known of the nuisances.
   [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::MatrixXd> parts_across(acting on, double x) const {
     const auto rows = static_cast<Eigen::Index>(bins_.size()), columns = static_cast<Eigen::Index>(nuisances_.size());
-    std::pair<Eigen::VectorXd, Eigen::MatrixXd> out{Eigen::VectorXd(2 * rows), Eigen::MatrixXd(2 * rows, columns)};
+    const auto known = static_cast<Eigen::Index>(doubts_.size());
+    std::pair<Eigen::VectorXd, Eigen::MatrixXd> out{Eigen::VectorXd::Zero(2 * rows + known),
+                                                    Eigen::MatrixXd::Zero(2 * rows + known, columns)};
     for (Eigen::Index i = 0; i < rows; ++i) {
       const Eigen::Vector2cd n = shares(on, x, static_cast<std::size_t>(i)).normalized();
       const auto part = [&](const spectrum_pair& r) { return n[1] * r(i, 0) - n[0] * r(i, 1); };
@@ -154,6 +187,9 @@ private:
       put(out.first, part(residual_));
       for (Eigen::Index k = 0; k < columns; ++k) put(out.second.col(k), part(nuisances_[static_cast<std::size_t>(k)]));
     }
+    for (Eigen::Index k = 0; k < known; ++k)
+      if (const auto& [off, sd] = doubts_[static_cast<std::size_t>(k)]; sd > 0)
+        out.second(2 * rows + k, k) = std::sqrt(row_variance()) / sd, out.first[2 * rows + k] = off * out.second(2 * rows + k, k);
     return out;
   }
   /// Least squares of the first by the second.
@@ -192,6 +228,7 @@ private:
   std::vector<string_at> at_;
   spectrum_pair residual_;
   std::vector<spectrum_pair> nuisances_;
+  std::vector<nuisance_doubt> doubts_;
 };
 
 /// Where what a fit leaves of one of its takes acts, over the first periods; nothing where that is mostly noise or no single

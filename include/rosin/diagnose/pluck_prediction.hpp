@@ -74,9 +74,10 @@ inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, doub
 
 /// A take that was not fitted, by the model of those that were.
 struct seen_take {
-  scene_data data;  ///< the take by itself
-  scene_fit fit;    ///< release, strength and the sensors' zeros were free
-  fit_stage stage;  ///< what was looked at in the end
+  scene_data data;          ///< the take by itself
+  scene_fit fit;            ///< release, strength and the sensors' zeros were free
+  fit_stage stage;          ///< what was looked at in the end
+  std::size_t nearest = 0;  ///< of those that were fitted, the one at the nearest place
 
   [[nodiscard]] line_problem<scene_plucks> problem() const { return data.problem(fit.effects, fit.value, stage, {1, 1}); }
 };
@@ -84,12 +85,12 @@ struct seen_take {
 /// By its first `most_periods`; nothing where no release is found. `most`: freedom::release_only where the place is exact.
 inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit, const pluck_take& held,
                                     double most_periods = 1e9, freedom most = freedom::release_and_place) {
-  seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options, data.guess.ends)}, {}, {}};
+  seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options, data.guess.ends)}, {}, {}, 0};
   const auto start = find_start(out.data.takes, data.guess);
   if (!start) return std::nullopt;
   Eigen::VectorXd v(out.data.layout.size());
   v.head(pluck_layout::first_position) = fit.value.head(pluck_layout::first_position);
-  std::size_t nearest = 0;
+  std::size_t& nearest = out.nearest;
   for (std::size_t t = 1; t < data.takes.size(); ++t)
     if (std::abs(data.takes[t].position - held.position) < std::abs(data.takes[nearest].position - held.position)) nearest = t;
   if (data.takes[nearest].position == held.position) most = freedom::release_only;

@@ -10,12 +10,14 @@
 //
 //     y(s) = [y_0 - F M(p, x) / (s D) + M(x, x) f(s) / D] / s,     y_0 the held string's.
 //
-// Loads and yielding ends are left out of y. Where several plucks meet it, softer ones by themselves foretell each of them.
+// Loads and yielding ends are left out of y. Where several plucks meet it, softer ones by themselves foretell each of them; where
+// all do, what no force at one place changes of the softest (rattling_string.hpp).
 //
 #pragma once
 
 #include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/diagnose/odd_pluck.hpp>
+#include <rosin/diagnose/rattling_string.hpp>
 
 #include <algorithm>
 
@@ -57,11 +59,17 @@ struct foretold {
 };
 
 /// Release and strength from what precedes the release and less than half a period behind it, before the string can have swung
-/// over.
+/// over, then with the place from what no force on the string changes.
 inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_take& take, double most_periods) {
-  auto seen = see(d.data, d.best, take, 0.45);
+  constexpr double untouched = 0.45;
+  auto seen = see(d.data, d.best, take, untouched, freedom::release_only);
   if (!seen) return std::nullopt;
   seen->stage.periods = std::min(most_periods, d.best.horizon_periods);
+  const pluck_take& nearest = d.data.takes[seen->nearest];
+  const double place = d.best.value[d.data.layout.position(seen->nearest)] + take.position - nearest.position;
+  const freedom free = take.position == nearest.position ? freedom::release_only : freedom::release_and_place;
+  descend_from_places({seen->data, seen->fit.value, place, free, d.best.quality.noise}, seen->fit);
+  seen->stage.free = free;
   const auto problem = seen->problem();
   const Eigen::VectorXd& v = seen->fit.value;
   const pluck_layout& layout = seen->data.layout;
@@ -75,15 +83,24 @@ inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_ta
   return out;
 }
 
-/// Median with weights.
-[[nodiscard]] inline double weighted_middle(const Eigen::VectorXd& x, const Eigen::VectorXd& weight) {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(x.size()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return x[a] < x[b]; });
-  double sum = 0;
-  for (const Eigen::Index i : order)
-    if ((sum += weight[i]) >= 0.5 * weight.sum()) return x[i];
-  return 0;
+/// Where a stop begins that yields and damps, y = gap + f / stiffness - (resistance / stiffness) dy/dt, by weighted least squares over
+/// where it is touched, and what that leaves of y, rms.
+[[nodiscard]] inline std::pair<double, double> stop_of(const Eigen::VectorXd& force_N, const Eigen::VectorXd& rise_m,
+                                                       const Eigen::VectorXd& weight) {
+  std::vector<Eigen::Index> touched;
+  for (Eigen::Index i = 1; i + 1 < weight.size(); ++i)
+    if (weight[i] > 0.01 * weight.maxCoeff()) touched.push_back(i);
+  Eigen::MatrixXd law(static_cast<Eigen::Index>(touched.size()), 3);
+  Eigen::VectorXd rise(law.rows());
+  for (Eigen::Index k = 0; k < law.rows(); ++k) {
+    const Eigen::Index i = touched[static_cast<std::size_t>(k)];
+    law.row(k) = std::sqrt(weight[i]) * Eigen::RowVector3d{1, force_N[i], rise_m[i + 1] - rise_m[i - 1]};
+    rise[k] = std::sqrt(weight[i]) * rise_m[i];
+  }
+  if (law.rows() == 0) return {0, 1e300};
+  if (law.rows() < 8) law.rightCols(2).setZero();  // too brief to tell a stop that yields from a wall
+  const Eigen::VectorXd found = law.completeOrthogonalDecomposition().solve(rise);
+  return {found[0], (rise - law * found).norm() / law.col(0).norm()};
 }
 
 /// Force and displacement at one place.
@@ -122,8 +139,8 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
 
 /// Whether a pluck that contradicts the others met an obstacle. impedance_Ns_m: the string's.
 [[nodiscard]] inline std::optional<rattle> find_rattle(const odd_pluck& odd, double impedance_Ns_m) {
-  // give: how far a stop yields is not told from the gap
-  constexpr double most_periods = 24, least_one_sided = 0.8, most_spread = 0.1, give = 0.02;
+  // give: a stop's law need not be a spring's and a dashpot's
+  constexpr double most_periods = 24, least_one_sided = 0.8, most_spread = 0.1, give = 0.01;
   auto t = detail::foretell(odd.others, odd.take, most_periods);
   if (!t || !(impedance_Ns_m > 0)) return std::nullopt;
   const auto& noise = odd.others.best.quality.noise;
@@ -141,9 +158,8 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
   const double up = f.cwiseMax(0).squaredNorm(), down = f.cwiseMin(0).squaredNorm(), side = up > down ? -1 : 1;  // the obstacle's
   const Eigen::VectorXd weight = (-side * f).cwiseMax(0).array().square();
   out.one_sided = std::max(up, down) / (up + down);
-  out.gap_m = side * (side * y).maxCoeff();  // the stop is where the string turns back
-  const Eigen::VectorXd off = (y.array() - out.gap_m).abs();
-  const double spread = detail::weighted_middle(off, weight);
+  double spread = 0;
+  std::tie(out.gap_m, spread) = detail::stop_of(f, y, weight);
   out.gap_sd_m = std::hypot(spread, give * out.gap_m);
   const Eigen::Index first =
       std::find_if(weight.begin(), weight.end(), [&](double w) { return w > 0.01 * weight.maxCoeff(); }) - weight.begin();
@@ -190,7 +206,8 @@ namespace detail {
   std::vector<pluck_take> all = takes;
   all.insert(all.end(), held.begin(), held.end());
   std::stable_sort(all.begin(), all.end(), [](const pluck_take& a, const pluck_take& b) { return a.strength_N > b.strength_N; });
-  for (std::ptrdiff_t strong = 2; strong < static_cast<std::ptrdiff_t>(all.size()); ++strong) {
+  const std::ptrdiff_t least = all.size() == 2 ? 1 : 2;
+  for (std::ptrdiff_t strong = least; strong < static_cast<std::ptrdiff_t>(all.size()); ++strong) {
     std::vector<pluck_take> soft(all.begin() + strong, all.end()), kept;
     if (soft.size() > 1) kept.push_back(std::move(soft.back())), soft.pop_back();
     auto others = diagnose_plucks(soft, kept, guess, options, catalogue_for, beside_it);
@@ -201,6 +218,27 @@ namespace detail {
     if (detail::rattles_alike(*odd, impedance_Ns_m)) return odd;
   }
   return std::nullopt;
+}
+
+/// At least two plucks, all of which met the same obstacle: the string is told by what no force at one place changes of the softest.
+[[nodiscard]] inline std::optional<odd_pluck> find_rattling_string(const std::vector<pluck_take>& takes,
+                                                                   const std::vector<pluck_take>& held, const pluck_guess& guess,
+                                                                   const pluck_options& options, double impedance_Ns_m) {
+  std::vector<pluck_take> all = takes;
+  all.insert(all.end(), held.begin(), held.end());
+  if (all.size() < 2) return std::nullopt;
+  std::stable_sort(all.begin(), all.end(), [](const pluck_take& a, const pluck_take& b) { return a.strength_N > b.strength_N; });
+  const pluck_layout layout({all.back()}, options, guess.ends);
+  pluck_diagnosis by{{{all.back()}, guess, options, layout}, {}, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
+  auto fit = fit_past_a_force(by.data);
+  if (!fit) return std::nullopt;
+  by.best = by.base = *std::move(fit);
+  by.declared.layout = layout, by.declared.value = by.best.value, by.declared.sd = by.best.sd,
+  by.declared.covariance = by.best.covariance, by.declared.noise_N = by.best.quality.noise;
+  auto odd = detail::against(std::move(by), all.front(), guess, options);
+  if (!odd) return std::nullopt;
+  odd->also.assign(all.begin() + 1, all.end());
+  return detail::rattles_alike(*odd, impedance_Ns_m) ? odd : std::nullopt;
 }
 
 }  // namespace rosin
