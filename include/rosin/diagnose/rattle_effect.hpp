@@ -139,8 +139,8 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
 
 /// Whether a pluck that contradicts the others met an obstacle. impedance_Ns_m: the string's.
 [[nodiscard]] inline std::optional<rattle> find_rattle(const odd_pluck& odd, double impedance_Ns_m) {
-  // give: a stop's law need not be a spring's and a dashpot's
-  constexpr double most_periods = 24, least_one_sided = 0.8, most_spread = 0.1, give = 0.01;
+  // twist: where wire and stop hold the surface, it is further aside than the string, whose motion this is, by that share of the gap
+  constexpr double most_periods = 24, least_one_sided = 0.8, most_spread = 0.1, twist = 0.035;
   auto t = detail::foretell(odd.others, odd.take, most_periods);
   if (!t || !(impedance_Ns_m > 0)) return std::nullopt;
   const auto& noise = odd.others.best.quality.noise;
@@ -160,7 +160,7 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
   out.one_sided = std::max(up, down) / (up + down);
   double spread = 0;
   std::tie(out.gap_m, spread) = detail::stop_of(f, y, weight);
-  out.gap_sd_m = std::hypot(spread, give * out.gap_m);
+  out.gap_sd_m = std::hypot(spread, twist * out.gap_m);
   const Eigen::Index first =
       std::find_if(weight.begin(), weight.end(), [&](double w) { return w > 0.01 * weight.maxCoeff(); }) - weight.begin();
   out.begin_s = t->begin_s, out.first_s = t->begin_s + static_cast<double>(first) / odd.take.rate_Hz;

@@ -43,7 +43,7 @@ TEST_CASE("rattle: an obstacle that only the strongest pluck meets is found, wit
             found->gap_m, " +- ", found->gap_sd_m, " one-sided ", found->one_sided, " at ", found->first_s, " before ",
             found->before, " after ", found->after, " odd floor ", odd->floor);
     CHECK(std::abs(found->place.position - position) < 0.002);
-    CHECK(std::abs(found->gap_m / gap_m - 1) < 0.05);
+    CHECK(std::abs(found->gap_m / gap_m - 1) < 0.02);
     CHECK(found->after < 0.02 * found->before);
     CHECK(found->gap_sd_m < 0.05e-3);
   }
@@ -63,7 +63,7 @@ TEST_CASE("rattle: one that two of three plucks meet is told by both, against th
   const auto found = rosin::find_rattle(*odd, Z);
   REQUIRE(found);
   CHECK(std::abs(found->place.position - stop.position) < 0.002);
-  CHECK(std::abs(found->gap_m / stop.gap_m - 1) < 0.05);
+  CHECK(std::abs(found->gap_m / stop.gap_m - 1) < 0.02);
   const auto clipped = [&](double force_N, std::uint64_t seed) {
     auto take = pluck(force_N, seed, {});
     for (auto& channel : take.force_N)
