@@ -74,49 +74,48 @@ inline across_a_place look_across(const begun_take& take, const scene_fit& fit, 
   return out;
 }
 
-/// From a fit that has begun to one with as little left across as can be.
-inline across_a_place descend_across(const begun_take& take, scene_fit& fit) {
-  constexpr int most_rounds = 30;
-  constexpr double least_share = 0.01, settled = 1e-4, much = 100;
+/// From a fit that has begun to one with as little left across as can be. `over`: of what it begins with.
+inline across_a_place descend_across(const begun_take& take, scene_fit& fit, double periods, double over, double settled) {
+  constexpr int most_rounds = 20;
+  constexpr double least_share = 0.02;
   const scene_plucks model(take.data.layout, take.data.guess.ac_coupled_Hz, fit.effects, take.free);
   const double highest_Hz = take.data.options.limits_for(take.data.takes[0].rate_Hz).stop_Hz;
-  double over = much;
-  across_a_place here;
-  for (const double periods : {3.0, 8.0, 24.0}) {
-    here = look_across(take, fit, periods, over);
-    double share = 1, gain = 1;
-    for (int round = 0; round < most_rounds && share > least_share && gain > settled; ++round) {
-      scene_fit next = fit;
-      next.value(here.parameters) += share * here.step;
-      share /= 2;
-      if (!model.plausible(next.value, take.declared, highest_Hz)) continue;
-      auto there = look_across(take, next, periods, std::max(1.0, here.over_noise));
-      if (!(there.over_noise < here.over_noise)) continue;
-      gain = 1 - there.over_noise / here.over_noise;
-      fit = std::move(next), here = std::move(there), share = std::min(1.0, 4 * share);
-    }
-    over = std::max(1.0, here.over_noise);
+  across_a_place here = look_across(take, fit, periods, over);
+  double share = 1, gain = 1;
+  for (int round = 0; round < most_rounds && share > least_share && gain > settled; ++round) {
+    scene_fit next = fit;
+    next.value(here.parameters) += share * here.step;
+    share /= 2;
+    if (!model.plausible(next.value, take.declared, highest_Hz)) continue;
+    auto there = look_across(take, next, periods, std::max(1.0, here.over_noise));
+    if (!(there.over_noise < here.over_noise)) continue;
+    gain = 1 - there.over_noise / here.over_noise;
+    fit = std::move(next), here = std::move(there), share = std::min(1.0, 4 * share);
   }
   return here;
 }
 
-/// The same from three places of the pluck, where its place is free, and in either half of the string, as long as more than noise is
-/// left: few samples of a short string precede its first contact, and a force has a mirror image.
+/// By the first periods, then by all. From three places of the pluck, where its place is free, and in either half of the string, as
+/// long as more than noise is left: few samples of a short string precede its first contact, and a force has a mirror image.
 inline across_a_place descend_from_places(begun_take take, scene_fit& fit) {
-  constexpr double as_good_as_noise = 1.5;
+  constexpr double as_good_as_noise = 1.5, much = 100, roughly = 1e-2, well = 1e-4;
   const Eigen::Index at = take.data.layout.position(0);
   const scene_fit begun = fit;
-  across_a_place best = descend_across(take, fit);
+  const auto by_few = [&](scene_fit& some) {
+    const double over = descend_across(take, some, 3, much, roughly).over_noise;
+    return descend_across(take, some, 8, std::max(1.0, over), roughly).over_noise;
+  };
+  double least = by_few(fit);
   for (const double side : {0.0, -1.0, 1.0})
     for (const double half : {0.0, 0.5}) {
-      if (best.over_noise < as_good_as_noise || (side != 0 && take.free == freedom::release_only)) break;
+      if (least < as_good_as_noise || (side != 0 && take.free == freedom::release_only)) break;
       scene_fit other = begun;
       if (side != 0) other.value[at] = take.place + side * take.data.guess.position_tolerance;
       take.within = {half, half + 0.5};
-      auto found = descend_across(take, other);
-      if (found.over_noise < best.over_noise) best = std::move(found), fit = std::move(other);
+      if (const double left = by_few(other); left < least) least = left, fit = std::move(other);
     }
-  return best;
+  take.within = {0, 1};
+  return descend_across(take, fit, 24, std::max(1.0, least), well);
 }
 
 /// The string as declared, release and strength from what precedes the first contact.
@@ -137,14 +136,16 @@ inline std::optional<scene_fit> begun_as_declared(const scene_data& data) {
 
 }  // namespace detail
 
-/// The declared string fitted to the only take of `data`, whatever a force at one place does to it; nothing where what is left acts
-/// elsewhere, or where too little precedes the release to tell the noise.
+/// The declared string fitted to the only take of `data`, whatever a force at one place does to it; nothing where that leaves more than
+/// noise, or where too little precedes the release to tell the noise.
 [[nodiscard]] inline std::optional<scene_fit> fit_past_a_force(const scene_data& data) {
   auto fit = detail::begun_as_declared(data);
   if (!fit) return std::nullopt;
   const detail::seen_noise still = detail::noise_before_release(data, *fit);
   if (!(still.samples > 0)) return std::nullopt;
   const auto found = detail::descend_from_places({data, fit->value, data.takes[0].position, freedom::all, still.rms_N}, *fit);
+  constexpr double most_over_noise = 5;
+  if (!(found.over_noise < most_over_noise)) return std::nullopt;
   fit->horizon_periods = 24;
   detail::conclude(*fit, data, data.problem({}, fit->value, {1000, 24, true, freedom::all}, still.rms_N));
   fit->quality.noise = still.rms_N;
