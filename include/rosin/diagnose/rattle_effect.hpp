@@ -234,7 +234,9 @@ namespace detail {
   if (!fit) return std::nullopt;
   by.best = by.base = *std::move(fit);
   by.declared.layout = layout, by.declared.value = by.best.value, by.declared.sd = by.best.sd,
-  by.declared.covariance = by.best.covariance, by.declared.noise_N = by.best.quality.noise;
+  by.declared.covariance = by.best.covariance, by.declared.noise_N = by.best.quality.noise,
+  by.declared.limits = options.limits_for(all.back().rate_Hz, layout.string(by.best.value)),
+  by.declared.residual_ratio = by.best.quality.residual_ratio, by.declared.horizon_periods = by.best.horizon_periods;
   auto odd = detail::against(std::move(by), all.front(), guess, options);
   if (!odd) return std::nullopt;
   odd->also.assign(all.begin() + 1, all.end());

@@ -57,6 +57,7 @@ TEST_CASE("rattling string: of two plucks that both met the same obstacle its pl
   REQUIRE(odd);
   CHECK(odd->take.name == "pluck-1");
   REQUIRE(odd->also.size() == 1);
+  CHECK(odd->others.declared.limits.stop_Hz > 1e4);
   const auto found = rosin::find_rattle(*odd, Z);
   REQUIRE(found);
   MESSAGE("place ", found->place.position, " gap ", found->gap_m, " +- ", found->gap_sd_m, " one-sided ", found->one_sided,
