@@ -52,14 +52,18 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
         fit.value[rosin::pluck_layout::fundamental], rate, fit.limits.stop_Hz, impedance, length, fit.layout.takes()};
     return rosin::catalogue_without(known, facts, fit.limits);
   };
+  const bool may_rattle = impedance > 0 && std::find(known.begin(), known.end(), "rattle") == known.end();
+  const auto look_for_obstacle = [&](rosin::odd_pluck& odd) {
+    if (may_rattle && !odd.lost && !odd.moved) odd.met = rosin::find_rattle(odd, impedance);
+  };
   auto found = rosin::diagnose_plucks(plucks->takes, plucks->held, plucks->guess, plucks->options, catalogue);
   rosin::pluck_guess told = plucks->guess;
   if (!found) {  // of one of another string or pitch nothing rings as declared together
     auto odd = rosin::find_odd_pluck(plucks->takes, plucks->held, told, plucks->options, catalogue);
     if (!odd) return failed(found.error(), plucks->warnings);
+    look_for_obstacle(*odd);
     return plucks_told{odd->others, std::move(odd)};
   }
-  const bool may_rattle = impedance > 0 && std::find(known.begin(), known.end(), "rattle") == known.end();
   if (!found->explained && may_rattle)
     if (auto all = rosin::find_rattling_string(plucks->takes, plucks->held, plucks->guess, plucks->options, impedance)) {
       all->others.ranking = found->ranking;
@@ -75,7 +79,8 @@ rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosi
   if (out.found.explained) return out;
   told.ends = out.found.data.layout.ends(out.found.best.value);
   out.odd = rosin::find_odd_pluck(plucks->takes, plucks->held, told, plucks->options, catalogue);
-  if (!may_rattle || (out.odd && (out.odd->lost || out.odd->moved || rosin::find_rattle(*out.odd, impedance)))) return out;
+  if (out.odd) look_for_obstacle(*out.odd);
+  if (!may_rattle || (out.odd && (out.odd->lost || out.odd->moved || out.odd->met))) return out;
   if (auto some = rosin::find_rattling_plucks(plucks->takes, plucks->held, told, plucks->options, catalogue, impedance))
     out.odd = std::move(some);
   return out;

@@ -197,19 +197,14 @@ std::optional<rig_diagnosis> wide_and_drifted(const rosin::rig& rig, const rosin
 /// Names of the strokes in which the string moves as far as the obstacle that was found: of Helmholtz motion
 /// v x (1 - x) / (2 f0 p) to either side at x, bowed at p.
 std::string strokes_that_rattle(const rosin::rig& rig, const rosin::rig_values& values, const rosin::pluck_diagnosis& p,
-                                const rig_diagnosis& d) {
+                                const rosin::rattle& met) {
   constexpr double near_it = 0.7;  // friction holds the string aside besides
-  const auto rattle = std::find_if(d.missing.begin(), d.missing.end(), [](const auto& m) { return m.effect == "rattle"; });
-  if (rattle == d.missing.end() || !rattle->position) return {};
-  const double x = *rattle->position;
-  double gap_m = 0;
-  for (const auto& q : rattle->parameters)
-    if (q.name == "gap_m") gap_m = q.value;
+  const double x = met.place.position;
   std::string names;
   for (const rosin::take& take : rig.takes) {
     if (take.kind != rosin::take_kind::bow) continue;
     const double bowed = rig.position_of(take).value_or(values.position ? values.position->value : 0.5);
-    if (take.speed_m_s && *take.speed_m_s * x * (1 - x) / (2 * p.best.value[0] * bowed) < near_it * gap_m) continue;
+    if (take.speed_m_s && *take.speed_m_s * x * (1 - x) / (2 * p.best.value[0] * bowed) < near_it * std::abs(met.gap_m)) continue;
     names += (names.empty() ? "" : ", ") + take.name;
   }
   return names;
@@ -253,7 +248,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   std::vector<diagnosed_stroke> strokes;
   const bool plain_string = is_plain(p);
   bool contact_open = false;
-  const auto reaching = strokes_that_rattle(rig, values, p, d);
+  const auto reaching = plucks->odd && plucks->odd->met ? strokes_that_rattle(rig, values, p, *plucks->odd->met) : std::string{};
   if (!reaching.empty())
     d.assumed.push_back("the strokes were not examined: in " + reaching + " the string's motion reaches the obstacle as well");
   else if (p.explained && values.impedance_Ns_m) strokes = reconstruct_strokes(rig, values, p, 0, from, d.warnings);

@@ -62,9 +62,8 @@ void add_cause(missing_effect m, rig_diagnosis& d) {
 std::string contradiction(const rosin::odd_pluck& odd) {
   std::string names = odd.take.name;
   const std::string& told_by = odd.others.data.takes[0].name;
-  bool all = false;  // the string is told by a pluck that is odd itself
-  for (const rosin::pluck_take& take : odd.also) names += ", " + take.name, all = all || take.name == told_by;
-  if (all)
+  for (const rosin::pluck_take& take : odd.also) names += ", " + take.name;
+  if (std::any_of(odd.also.begin(), odd.also.end(), [&](const auto& take) { return take.name == told_by; }))
     return names + ": something acts on the string in each of them; it is told by what that leaves unchanged of " + told_by;
   const std::string out = names + (odd.also.empty() ? " contradicts" : " contradict") + " the other plucks: ";
   if (odd.lost) return out + in_digits(static_cast<double>(odd.lost->count), "%.0f") + " samples are missing in it";
@@ -92,9 +91,8 @@ bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const
   if (lost_some) add_cause(lost(odd.take.name, {}, static_cast<double>(odd.lost->count), odd.lost->time_s, odd.lost->sd_s), d);
   if (moved) add_cause(made_at(odd.take.name, odd.moved->position, odd.moved->sd, odd.take.position), d);
   if (lost_some || moved) return true;
-  const auto rattle =
-      knows("rattle") && values.impedance_Ns_m ? rosin::find_rattle(odd, values.impedance_Ns_m->value) : std::nullopt;
-  if (!rattle) return false;
+  if (!odd.met) return false;
+  const rosin::rattle* rattle = &*odd.met;
   d.position = rattle->place.position, d.time_s = {rattle->first_s, rattle->first_s + odd.time_s[1] - odd.time_s[0]};
   d.before = rattle->before, d.after = rattle->after, d.noise_floor = rattle->floor,
   d.residual_over_noise = rattle->before / rattle->floor;

@@ -1,6 +1,5 @@
 # rosin record, killed at random moments: the take can be read, every sample is right, at most the last 0.1 s of what it had read
-# is missing, and the rig file is whole. The first is killed while it starts, when what a pipe holds
-# may be missing, too.
+# is missing, and the rig file is whole. The first is killed while it starts, when what a pipe holds may be missing, too.
 # ROSIN_KILLS says how often (50 for a thorough look).
 . "$ROSIN_SOURCE/tests/tool/common.sh"
 make_rig described

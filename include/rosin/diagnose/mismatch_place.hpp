@@ -124,12 +124,7 @@ public:
   }
   /// Their covariance, noise being all that lies across.
   [[nodiscard]] Eigen::MatrixXd covariance(const acting_place& at) const {
-    const Eigen::MatrixXd moved = parts_across(at.on, at.position).second;
-    const Eigen::VectorXd scale = moved.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-    const Eigen::MatrixXd unit = moved * scale.asDiagonal();
-    Eigen::MatrixXd normal = unit.transpose() * unit;
-    normal.diagonal().array() += 1e-10;
-    return row_variance() * (scale.asDiagonal() * normal.inverse() * scale.asDiagonal());
+    return row_variance() * inverse_normal(parts_across(at.on, at.position).second);
   }
   /// There is more than noise, which is taken for white.
   [[nodiscard]] bool is_mismatch() const { return 2 * noise_power_ < most_noise * power_; }
@@ -192,13 +187,17 @@ private:
         out.second(2 * rows + k, k) = std::sqrt(row_variance()) / sd, out.first[2 * rows + k] = off * out.second(2 * rows + k, k);
     return out;
   }
-  /// Least squares of the first by the second.
-  [[nodiscard]] static Eigen::VectorXd fitted(const Eigen::VectorXd& left, const Eigen::MatrixXd& moved) {
+  /// (J^T J)^-1, what no column tells left small.
+  [[nodiscard]] static Eigen::MatrixXd inverse_normal(const Eigen::MatrixXd& moved) {
     const Eigen::VectorXd scale = moved.colwise().norm().cwiseMax(1e-300).cwiseInverse();
     const Eigen::MatrixXd unit = moved * scale.asDiagonal();
     Eigen::MatrixXd normal = unit.transpose() * unit;
     normal.diagonal().array() += 1e-10;
-    return scale.asDiagonal() * normal.ldlt().solve(unit.transpose() * left);
+    return scale.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd(scale.asDiagonal()));
+  }
+  /// Least squares of the first by the second.
+  [[nodiscard]] static Eigen::VectorXd fitted(const Eigen::VectorXd& left, const Eigen::MatrixXd& moved) {
+    return inverse_normal(moved) * (moved.transpose() * left);
   }
   /// Power across the shares of a place, with the nuisances' part taken out.
   [[nodiscard]] double across(acting on, double x) const {

@@ -24,6 +24,17 @@ struct moved_pluck {
   double position = 0, sd = 0;
 };
 
+/// An obstacle that a pluck met (rattle_effect.hpp).
+struct rattle {
+  acting_place place;
+  double gap_m = 0, gap_sd_m = 0;  ///< of the obstacle from the string at rest, positive towards the pluck's side
+  double one_sided = 0;            ///< share of the force's square that pushes away from the obstacle; 1: all of it
+  double first_s = 0;              ///< first contact, from the take's beginning
+  double begin_s = 0;              ///< of what follows
+  std::array<Eigen::VectorXd, 2> before_N{}, left_N{};  ///< residual, and what a force at that place leaves of it
+  double before = 0, after = 0, floor = 0;              ///< rms residual / rms recorded without and with it; the noise's share
+};
+
 /// The part of a take after its release, and what it should be, in the band.
 struct take_and_model {
   std::array<Eigen::VectorXd, 2> recorded, model;
@@ -42,6 +53,7 @@ struct odd_pluck {
   double before = 0, floor = 0;        ///< rms residual / rms recorded, as the others predict it; the noise's share
   std::optional<lost_samples> lost{};  ///< if that is what is odd
   std::optional<moved_pluck> moved{};  ///< or this
+  std::optional<rattle> met{};         ///< or this, where it was looked for
   take_and_model elsewhere{};          ///< `ringing` from there
   double after = 0;                    ///< with the loss, or from there
 };

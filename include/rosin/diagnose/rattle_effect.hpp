@@ -23,16 +23,6 @@
 
 namespace rosin {
 
-struct rattle {
-  acting_place place;
-  double gap_m = 0, gap_sd_m = 0;  ///< of the obstacle from the string at rest, positive towards the pluck's side
-  double one_sided = 0;            ///< share of the force's square that pushes away from the obstacle; 1: all of it
-  double first_s = 0;              ///< first contact, from the take's beginning
-  double begin_s = 0;              ///< of what follows
-  std::array<Eigen::VectorXd, 2> before_N{}, left_N{};  ///< residual, and what a force at that place leaves of it
-  double before = 0, after = 0, floor = 0;              ///< rms residual / rms recorded without and with it; the noise's share
-};
-
 namespace detail {
 
 /// The record whose damped spectrum this is.
@@ -60,11 +50,11 @@ struct foretold {
 
 /// Release and strength from what precedes the release and less than half a period behind it, before the string can have swung
 /// over, then with the place from what no force on the string changes.
-inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_take& take, double most_periods) {
+inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_take& take) {
   constexpr double untouched = 0.45;
   auto seen = see(d.data, d.best, take, untouched, freedom::release_only);
   if (!seen) return std::nullopt;
-  seen->stage.periods = std::min(most_periods, d.best.horizon_periods);
+  seen->stage.periods = std::min(rattling_periods, d.best.horizon_periods);
   const pluck_take& nearest = d.data.takes[seen->nearest];
   const double place = d.best.value[d.data.layout.position(seen->nearest)] + take.position - nearest.position;
   const freedom free = take.position == nearest.position ? freedom::release_only : freedom::release_and_place;
@@ -140,8 +130,8 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
 /// Whether a pluck that contradicts the others met an obstacle. impedance_Ns_m: the string's.
 [[nodiscard]] inline std::optional<rattle> find_rattle(const odd_pluck& odd, double impedance_Ns_m) {
   // twist: where wire and stop hold the surface, it is further aside than the string, whose motion this is, by that share of the gap
-  constexpr double most_periods = 24, least_one_sided = 0.8, most_spread = 0.1, twist = 0.035;
-  auto t = detail::foretell(odd.others, odd.take, most_periods);
+  constexpr double least_one_sided = 0.8, most_spread = 0.1, twist = 0.035;
+  auto t = detail::foretell(odd.others, odd.take);
   if (!t || !(impedance_Ns_m > 0)) return std::nullopt;
   const auto& noise = odd.others.best.quality.noise;
   const place_search search(t->scene, t->gain, t->limits, t->left, noise);
@@ -181,31 +171,38 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
 
 namespace detail {
 
-/// All plucks that contradict the others met one and the same obstacle.
-[[nodiscard]] inline bool rattles_alike(const odd_pluck& odd, double impedance_Ns_m) {
+/// The obstacle, if all plucks that contradict the others met one and the same.
+[[nodiscard]] inline std::optional<rattle> met_by_all(const odd_pluck& odd, double impedance_Ns_m) {
   constexpr double most_apart = 0.01, sure = 3;
   const auto first = find_rattle(odd, impedance_Ns_m);
-  return first && std::all_of(odd.also.begin(), odd.also.end(), [&](const pluck_take& take) {
-           odd_pluck other = odd;
-           other.take = take;
-           const auto again = find_rattle(other, impedance_Ns_m);
-           return again && std::abs(again->place.position - first->place.position) < most_apart &&
-                  std::abs(again->gap_m - first->gap_m) < sure * std::hypot(again->gap_sd_m, first->gap_sd_m);
-         });
+  const bool alike = first && std::all_of(odd.also.begin(), odd.also.end(), [&](const pluck_take& take) {
+                       odd_pluck other = odd;
+                       other.take = take;
+                       const auto again = find_rattle(other, impedance_Ns_m);
+                       return again && std::abs(again->place.position - first->place.position) < most_apart &&
+                              std::abs(again->gap_m - first->gap_m) < sure * std::hypot(again->gap_sd_m, first->gap_sd_m);
+                     });
+  return alike ? first : std::nullopt;
+}
+
+/// Fitted ones and those that were set aside, the strongest first.
+[[nodiscard]] inline std::vector<pluck_take> by_strength(std::vector<pluck_take> takes, const std::vector<pluck_take>& held) {
+  takes.insert(takes.end(), held.begin(), held.end());
+  std::stable_sort(takes.begin(), takes.end(),
+                   [](const pluck_take& a, const pluck_take& b) { return a.strength_N > b.strength_N; });
+  return takes;
 }
 
 }  // namespace detail
 
-/// The strongest of at least three plucks and the next ones, where they met the same obstacle and the softer ones, diagnosed by
+/// The strongest of three plucks or more and the next ones, or the stronger of two, where they met the same obstacle and the softer ones, diagnosed by
 /// themselves, leave nothing unexplained. For what no single odd one (odd_pluck.hpp) accounts for.
 [[nodiscard]] inline std::optional<odd_pluck> find_rattling_plucks(
     const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
     const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
     double impedance_Ns_m) {
   constexpr int beside_it = 1;  // effects that the softer ones show
-  std::vector<pluck_take> all = takes;
-  all.insert(all.end(), held.begin(), held.end());
-  std::stable_sort(all.begin(), all.end(), [](const pluck_take& a, const pluck_take& b) { return a.strength_N > b.strength_N; });
+  const std::vector<pluck_take> all = detail::by_strength(takes, held);
   const std::ptrdiff_t least = all.size() == 2 ? 1 : 2;
   for (std::ptrdiff_t strong = least; strong < static_cast<std::ptrdiff_t>(all.size()); ++strong) {
     std::vector<pluck_take> soft(all.begin() + strong, all.end()), kept;
@@ -215,7 +212,7 @@ namespace detail {
     auto odd = detail::against(*std::move(others), all.front(), guess, options);
     if (!odd) continue;
     odd->also.assign(all.begin() + 1, all.begin() + strong);
-    if (detail::rattles_alike(*odd, impedance_Ns_m)) return odd;
+    if ((odd->met = detail::met_by_all(*odd, impedance_Ns_m))) return odd;
   }
   return std::nullopt;
 }
@@ -224,10 +221,8 @@ namespace detail {
 [[nodiscard]] inline std::optional<odd_pluck> find_rattling_string(const std::vector<pluck_take>& takes,
                                                                    const std::vector<pluck_take>& held, const pluck_guess& guess,
                                                                    const pluck_options& options, double impedance_Ns_m) {
-  std::vector<pluck_take> all = takes;
-  all.insert(all.end(), held.begin(), held.end());
+  const std::vector<pluck_take> all = detail::by_strength(takes, held);
   if (all.size() < 2) return std::nullopt;
-  std::stable_sort(all.begin(), all.end(), [](const pluck_take& a, const pluck_take& b) { return a.strength_N > b.strength_N; });
   const pluck_layout layout({all.back()}, options, guess.ends);
   pluck_diagnosis by{{{all.back()}, guess, options, layout}, {}, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
   auto fit = fit_past_a_force(by.data);
@@ -240,7 +235,8 @@ namespace detail {
   auto odd = detail::against(std::move(by), all.front(), guess, options);
   if (!odd) return std::nullopt;
   odd->also.assign(all.begin() + 1, all.end());
-  return detail::rattles_alike(*odd, impedance_Ns_m) ? odd : std::nullopt;
+  odd->met = detail::met_by_all(*odd, impedance_Ns_m);
+  return odd->met ? odd : std::nullopt;
 }
 
 }  // namespace rosin

@@ -21,6 +21,9 @@ namespace rosin {
 
 namespace detail {
 
+/// So much of the decay is looked at.
+inline constexpr double rattling_periods = 24;
+
 /// How far parameters may be from what a rig file makes of them, as standard deviations, where the fit of plucks assumes nothing.
 [[nodiscard]] inline nuisance_doubt doubt_of(const scene_plucks& model, Eigen::Index p, const Eigen::VectorXd& v,
                                              const Eigen::VectorXd& declared, double place, const scene_data& data) {
@@ -115,21 +118,16 @@ inline across_a_place descend_from_places(begun_take take, scene_fit& fit) {
       if (const double left = by_few(other); left < least) least = left, fit = std::move(other);
     }
   take.within = {0, 1};
-  return descend_across(take, fit, 24, std::max(1.0, least), well);
+  return descend_across(take, fit, rattling_periods, std::max(1.0, least), well);
 }
 
 /// The string as declared, release and strength from what precedes the first contact.
 inline std::optional<scene_fit> begun_as_declared(const scene_data& data) {
-  const auto start = find_start(data.takes, data.guess);
-  if (!start) return std::nullopt;
-  const double pitch_Hz = data.guess.fundamental_Hz;
   scene_fit fit;
-  fit.value =
-      data.layout.initial(data.takes, data.guess, pitch_Hz,
-                          {start->release_s[0] + 0.25 / start->fundamental_Hz - 0.25 / pitch_Hz}, {data.takes[0].position});
+  fit.value = data.layout.initial(data.takes, data.guess, data.guess.fundamental_Hz, {0}, {data.takes[0].position});
   fit.horizon_periods = 0.45;
   const auto seen = see(data, fit, data.takes[0], fit.horizon_periods);
-  if (!seen || seen->fit.value.size() != fit.value.size()) return std::nullopt;
+  if (!seen) return std::nullopt;
   fit.value = seen->fit.value;
   return fit;
 }
@@ -146,8 +144,8 @@ inline std::optional<scene_fit> begun_as_declared(const scene_data& data) {
   const auto found = detail::descend_from_places({data, fit->value, data.takes[0].position, freedom::all, still.rms_N}, *fit);
   constexpr double most_over_noise = 5;
   if (!(found.over_noise < most_over_noise)) return std::nullopt;
-  fit->horizon_periods = 24;
-  detail::conclude(*fit, data, data.problem({}, fit->value, {1000, 24, true, freedom::all}, still.rms_N));
+  fit->horizon_periods = detail::rattling_periods;
+  detail::conclude(*fit, data, data.problem({}, fit->value, {1000, fit->horizon_periods, true, freedom::all}, still.rms_N));
   fit->quality.noise = still.rms_N;
   fit->covariance.setZero(), fit->sd.setZero();
   fit->sd(found.parameters) = found.sd;

@@ -3,25 +3,19 @@
 #include <rosin/diagnose/rattling_string.hpp>
 
 #include <rosin/diagnose/rattle_effect.hpp>
-#include <rosin/simulate/burdened_signals.hpp>
 
-#include "plucked.hpp"
+#include "stopped_pluck.hpp"
 
 #include <doctest/doctest.h>
 
 namespace {
 
+/// Gains, strength and place are not quite what is declared.
 rosin::pluck_take rattled(double force_N, std::uint64_t seed, const rosin::obstacle& stop) {
-  rosin::rig_burden burden;
-  burden.string.stop = stop;
-  const auto made = rosin::simulate_pluck(test::plucked_rig, burden,
-                                          {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.05});
-  rosin::pluck_take take;
-  take.name = "pluck-" + std::to_string(seed);
-  take.rate_Hz = made->sample_rate_Hz, take.strength_N = 0.99 * force_N, take.position = 0.302;
-  const rosin::converter sensor{.gain = 1.02, .newtons_per_full_scale = 3, .noise_N = 0.3e-3, .bits = 16};
-  take.force_N = {rosin::convert(made->force_near_N, take.rate_Hz, sensor, 2 * seed).newtons(),
-                  rosin::convert(made->force_far_N, take.rate_Hz, sensor, 2 * seed + 1).newtons()};
+  rosin::pluck_take take = test::stopped_pluck(force_N, seed, stop);
+  take.strength_N *= 0.99, take.position = 0.302;
+  for (auto& channel : take.force_N)
+    for (double& x : channel) x *= 1.02;
   return take;
 }
 
@@ -30,19 +24,20 @@ constexpr rosin::obstacle in_the_way{0.62, -0.3e-3, 1e5};
 
 }  // namespace
 
-TEST_CASE("rattling string: pitch, losses and place of a pluck that met an obstacle, in spite of it" *
+TEST_CASE("rattling string: pitch, stiffness and place of a pluck that met an obstacle, in spite of it" *
           doctest::test_suite("long")) {
   const std::vector<rosin::pluck_take> takes{rattled(0.4, 1, in_the_way)};
   const rosin::scene_data data{takes, nominal, {}, rosin::pluck_layout(takes, {}, {})};
   const auto plain = rosin::fit_plucks(takes, nominal, {}, 1e9);  // what a fit that knows of none makes of it
   const auto fit = rosin::fit_past_a_force(data);
+  REQUIRE(plain);
   REQUIRE(fit);
   const auto& string = test::plucked_rig.string;
   const double stiff = std::pow(std::numbers::pi / string.length_m, 2) * string.bending_stiffness_Nm2 / string.tension_N;
   MESSAGE("f0 ", fit->value[0], " +- ", fit->sd[0], " B ", fit->value[1], " of ", stiff, " p ",
-          fit->value[data.layout.position(0)], " plain f0 ", plain ? plain->value[0] : 0.0);
+          fit->value[data.layout.position(0)], " plain f0 ", plain->value[0]);
   CHECK(std::abs(fit->value[rosin::pluck_layout::fundamental] / string.fundamental_Hz - 1) < 2e-5);
-  CHECK((!plain || std::abs(plain->value[rosin::pluck_layout::fundamental] / string.fundamental_Hz - 1) > 1e-4));
+  CHECK(std::abs(plain->value[rosin::pluck_layout::fundamental] / string.fundamental_Hz - 1) > 1e-4);
   CHECK(std::abs(fit->value[rosin::pluck_layout::inharmonicity] / stiff - 1) < 0.02);
   CHECK(std::abs(fit->value[data.layout.position(0)] - 0.3) < 1e-4);
   CHECK(std::abs(fit->value[rosin::pluck_layout::fundamental] - string.fundamental_Hz) <
