@@ -28,7 +28,20 @@
 #include <exception>
 #include <iostream>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace {
+
+/// Fits ask for the same few hundred kilobytes again and again. Where they go back to the system each time they return as page
+/// faults, a sixth of the time of a diagnosis.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+#endif
+}
 
 tool::exit_code run(int argc, char** argv) {
   auto result = tool::exit_code::ok;
@@ -60,6 +73,7 @@ tool::exit_code run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   try {
     return static_cast<int>(run(argc, argv));
   } catch (const std::exception& error) {
