@@ -138,11 +138,6 @@ bool add_contact(rosin::contact_findings& found, const gains_so_far& sofar, rig_
   return true;
 }
 
-/// What the sticking string moves by beyond noise.
-double stick_excess(const rosin::contact_findings& f) {
-  return std::sqrt(std::max(0.0, f.stick_fluctuation * f.stick_fluctuation - f.stick_floor * f.stick_floor));
-}
-
 /// What no name was found for, where it is more than noise and imperfect models leave: of string and sensors as well, where
 /// something was found there.
 std::optional<open_contact> left_open(const std::vector<diagnosed_stroke>& strokes, const rosin::contact_findings& found,
@@ -260,7 +255,8 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   gains_so_far gained;
   bool sticking = false;
   std::string first;  // statistic
-  double excess = stick_excess(found);
+  const rosin::contact_findings at_first = found;
+  rosin::contact_findings since = found;
   for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
     const rosin::contact_hypothesis best = found.hypotheses.front();
     if (round == 0) {
@@ -273,7 +269,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     if (round > 0) settle_first(ask, declared, best, d.missing[others]);
     model = rosin::include(std::move(model), best);
     found = ask(model);
-    if (best.width_s > 0) excess = stick_excess(found);  // now seen at the average of both places, and much better
+    if (best.width_s > 0) since = found;
     if (first == data_of(first)) add_after(traces_of(first, found), *d.contact);
     if (others == 0 && data_of(first) == d.metric && (first == d.metric || round > 0))
       d.after = left_in(d.metric, found), d.noise_floor = floor_in(d.metric, found);
@@ -288,7 +284,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
   if (!named) return !open;
   const bool most_is_left = others == 0 && d.after > std::max(2 * d.noise_floor, most_left * d.before);
-  if (!most_is_left && (!sticking || stick_excess(found) < std::max(found.stick_floor, most_left * excess))) return true;
+  if (!most_is_left && (!sticking || rosin::accounts_for_sticking(at_first, since, found))) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
   if (others > 0) d.left_in_strokes = shown_by("stick-fluctuation", found);

@@ -124,6 +124,23 @@ TEST_CASE("contact effects: friction that is gone where the law has none either 
   CHECK(rosin::detail::loses_touch(rows, left).left == test::approx(0.3 * std::sqrt(0.1)));
 }
 
+TEST_CASE("contact effects: what was found has to take half of what moved while it stuck, or leave a fifth of all at first") {
+  const auto stuck = [](double fluctuation, double floor) {
+    rosin::contact_findings f;
+    f.stick_fluctuation = fluctuation, f.stick_floor = floor;
+    return f;
+  };
+  const auto all = stuck(0.1, 0.01);
+  CHECK(rosin::accounts_for_sticking(all, all, stuck(0.04, 0.01)));
+  CHECK_FALSE(rosin::accounts_for_sticking(all, all, stuck(0.06, 0.01)));
+  CHECK(rosin::accounts_for_sticking(all, all, stuck(0.06, 0.05)));  // no more than is uncertain
+  // Versions that part by a width leave all uncertain. Six places that slide in part, and a ripple:
+  const auto as_one = stuck(0.2, 0.333), wide = stuck(0.039, 0.005);
+  CHECK(rosin::accounts_for_sticking(as_one, wide, stuck(0.0257, 0.005)));
+  // A drift of the tension that nobody knows of, taken for a width and bristles:
+  CHECK_FALSE(rosin::accounts_for_sticking(stuck(0.117, 0.195), stuck(0.0916, 0.0013), stuck(0.0517, 0.0014)));
+}
+
 TEST_CASE("contact effects: takes that tell nothing are left out, with a reason") {
   const std::vector<double> few(50, 0.1);
   rosin::contact_take take;
