@@ -257,6 +257,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   std::string first;  // statistic
   const rosin::contact_findings at_first = found;
   rosin::contact_findings since = found;
+  std::optional<rig_diagnosis> wide;  // no more than a width found, which takes most away
   for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
     const rosin::contact_hypothesis best = found.hypotheses.front();
     if (round == 0) {
@@ -273,7 +274,10 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     if (first == data_of(first)) add_after(traces_of(first, found), *d.contact);
     if (others == 0 && data_of(first) == d.metric && (first == d.metric || round > 0))
       d.after = left_in(d.metric, found), d.noise_floor = floor_in(d.metric, found);
+    if (round == 0 && best.width_s > 0 && found.stick_fluctuation < most_left * at_first.stick_fluctuation) wide = d;
   }
+  if (wide && sticking && !rosin::accounts_for_sticking(at_first, since, found))  // the width stands without what does not
+    d = *std::move(wide), found = since, sticking = false;
   const bool named = d.missing.size() > others;
   const std::optional<open_contact> open = named ? std::nullopt : left_open(strokes, found, d);
   if (open && others == 0) judge_by(*open, d);
