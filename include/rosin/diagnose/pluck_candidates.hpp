@@ -225,15 +225,31 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
   }
 }
 
-/// An effect that leaves more than noise once more from the first periods on, in small steps: over all of the record the fit may
-/// have come to rest with partials a little off.
+/// The values of a fit whose last effect sits on the string, with it at its mirror image: of a heavy load the partials of the first
+/// periods hardly tell one from the other.
+inline std::optional<Eigen::VectorXd> mirrored(const scene_fit& fit) {
+  const auto& parameters = fit.effects.back().parameters;
+  if (parameters.empty() || parameters[0].name != "position") return std::nullopt;
+  Eigen::VectorXd v = fit.value;
+  double& x = v[v.size() - static_cast<Eigen::Index>(parameters.size())];
+  x = 1 - x;
+  return v;
+}
+
+/// An effect that leaves more than noise once more from the first periods on, in small steps, and from its mirror image: over all of
+/// the record the fit may have come to rest with partials a little off.
 inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<double, 2> noise) {
   std::vector<fit_stage> stages;
   for (double periods = 1.5; periods < std::min(100.0, fit.horizon_periods); periods *= 2)
     stages.push_back({1000, periods, true});
   stages.push_back({1000, fit.horizon_periods, true, freedom::all});
-  scene_fit again = fit_scene(data, fit.effects, fit.value, stages, noise);
-  return cost_of(again, noise) < cost_of(fit, noise) ? again : fit;
+  std::vector<Eigen::VectorXd> from{fit.value};
+  if (auto other = mirrored(fit)) from.push_back(*std::move(other));
+  for (const Eigen::VectorXd& v : from) {
+    scene_fit again = fit_scene(data, fit.effects, v, stages, noise);
+    if (cost_of(again, noise) < cost_of(fit, noise)) fit = std::move(again);
+  }
+  return fit;
 }
 
 }  // namespace detail

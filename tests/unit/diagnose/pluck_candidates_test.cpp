@@ -90,3 +90,20 @@ TEST_CASE("a channel that comes late is no sensor that rings above the band, tho
   REQUIRE(seen.size() == 1);
   CHECK(std::exp(seen[0].value[layout.size()]) == test::approx(54e3).epsilon(0.01));
 }
+
+TEST_CASE("a bead whose mirror image was taken for it is found where it is, once more than noise is left") {
+  const rosin::string_facts facts{
+      .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
+  const rosin::pluck_options options{.internal_loss = false};
+  const auto layout = test::two_plucks(options);
+  const rosin::pluck_effect bead = rosin::point_mass_effect(facts);
+  constexpr std::array<double, 2> noise{3e-4, 3e-4};
+  rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
+  for (std::size_t t = 0; t < 2; ++t)
+    data.takes.push_back(test::scene_pluck(layout, {bead}, test::values_of(layout, {0.285, 9e-6, 0, 0}), t, noise[0], 3 + t));
+  const auto there = rosin::fit_scene(data, {bead}, test::values_of(layout, {0.714, 9e-6, 0, 0}), {{1000, 12, true}, {}}, noise);
+  REQUIRE(there.value[layout.size()] > 0.5);
+  const auto found = rosin::detail::rewound(data, there, noise);
+  CHECK(found.value[layout.size()] == test::approx(0.285).epsilon(1e-4));
+  CHECK(found.quality.inflation() < 1.5);
+}
