@@ -20,7 +20,7 @@ constexpr double further_tone_share =
 constexpr double further_give_share = 0.2;     ///< and what one model of its give leaves another one takes up
 constexpr double takes_most = 0.5;             ///< of the fluctuation that a further model of the contact's give finds
 constexpr double further_other_share = 0.005;  ///< of what was gained on another statistic
-constexpr double most_left = 0.5;  ///< found on rigs of another simulator: at most 0.4 where all was named right, 0.8 where not
+constexpr double most_left = rosin::contact_findings::most_left;
 
 missing_effect described(const rosin::contact_hypothesis& h, double probability) {
   missing_effect m;
@@ -258,6 +258,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   const rosin::contact_findings at_first = found;
   rosin::contact_findings since = found;
   std::optional<rig_diagnosis> wide;  // no more than a width found, which takes most away
+  const auto accounted = [&] { return !sticking || rosin::accounts_for_sticking(at_first, since, found); };
   for (int round = 0; round < most_contact_effects && add_contact(found, gained, d); ++round) {
     const rosin::contact_hypothesis best = found.hypotheses.front();
     if (round == 0) {
@@ -276,8 +277,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
       d.after = left_in(d.metric, found), d.noise_floor = floor_in(d.metric, found);
     if (round == 0 && best.width_s > 0 && found.stick_fluctuation < most_left * at_first.stick_fluctuation) wide = d;
   }
-  if (wide && sticking && !rosin::accounts_for_sticking(at_first, since, found))  // the width stands without what does not
-    d = *std::move(wide), found = since, sticking = false;
+  if (wide && !accounted()) d = *std::move(wide), found = since, sticking = false;  // it stands without what does not
   const bool named = d.missing.size() > others;
   const std::optional<open_contact> open = named ? std::nullopt : left_open(strokes, found, d);
   if (open && others == 0) judge_by(*open, d);
@@ -288,7 +288,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
   if (!named) return !open;
   const bool most_is_left = others == 0 && d.after > std::max(2 * d.noise_floor, most_left * d.before);
-  if (!most_is_left && (!sticking || rosin::accounts_for_sticking(at_first, since, found))) return true;
+  if (!most_is_left && accounted()) return true;
   d.missing.erase(d.missing.begin() + static_cast<std::ptrdiff_t>(others), d.missing.end());
   if (d.missing.empty()) d.after = d.before;
   if (others > 0) d.left_in_strokes = shown_by("stick-fluctuation", found);

@@ -35,7 +35,7 @@
 namespace {
 
 /// Fits ask for the same few hundred kilobytes again and again. Where they go back to the system each time they return as page
-/// faults, a sixth of the time of a diagnosis.
+/// faults, a fifth of the time of a diagnosis.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 32 << 20);

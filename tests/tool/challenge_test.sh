@@ -11,14 +11,9 @@ expect 0 check a/rigs/challenge-700001
 
 # What strokes show beyond what was found in the plucks is said: here torsion that nobody declares, and no effect of a contact in the catalogue.
 sed 's/, "torsion"//; /^\[torsion\]/,/^$/d' a/rigs/challenge-700001/rig.toml >a/rigs/challenge-700001/untwisted.toml
-no_contact=() few=() # what plucks show, without what takes long to seek and is not what is tested
-for effect in torsion rod-resonance elasto-plastic-friction creep speed-ripple normal-force-ripple thermal-friction finite-contact-width; do
-  no_contact+=(--without "$effect")
-done
-for effect in second-polarization point-mass support-resonance sensor-nonlinearity slow-release sympathetic-string phantom-partials; do
-  few+=(--without "$effect")
-done
-expect 0 diagnose a/rigs/challenge-700001/untwisted.toml "${no_contact[@]}" "${few[@]}" --json untwisted.json
+no_contact=$(without torsion rod-resonance elasto-plastic-friction creep speed-ripple normal-force-ripple thermal-friction finite-contact-width)
+few=$(without $elsewhere)
+expect 0 diagnose a/rigs/challenge-700001/untwisted.toml $no_contact $few --json untwisted.json
 says "unexplained" "channel comes" "That does not account for all of it. What sticks to the rod moves by"
 perl -MJSON::PP -e '
   local $/;
@@ -28,7 +23,7 @@ expect 0 validate untwisted.json
 
 # A drift that the catalogue does not know is no width that leaves most of what the strokes show.
 expect 0 challenge --out drift --seed 108015 --count 1 --effect tension-drift --only-make
-expect 0 diagnose drift/rigs/challenge-10801500000 --without tension-drift "${few[@]}" --json drift.json
+expect 0 diagnose drift/rigs/challenge-10801500000 --without tension-drift $few --json drift.json
 says ": unexplained"
 perl -MJSON::PP -e '
   local $/;
@@ -78,7 +73,7 @@ expect 0 compare forces/bow-1.csv forces/truth/challenge-700000.bow-1.csv --at-m
 # Of two plucks one alone does not tell stretching from the pitch: both are fitted, and that is said.
 expect 0 challenge --out pair --seed 101002 --count 1 --effect tension-modulation --only-make
 perl -0pi -e 's/\[\[take\]\]\nname = "pluck-3".*?(?=\[\[take\]\])//s' pair/rigs/*/rig.toml
-expect 0 diagnose pair/rigs/* "${few[@]}" "${no_contact[@]}" --json pair.json
+expect 0 diagnose pair/rigs/* $few $no_contact --json pair.json
 says "two plucks only"
 perl -MJSON::PP -e '
   local $/;
@@ -87,7 +82,7 @@ perl -MJSON::PP -e '
   die if @{ $said->{fit}{held_out} }' <pair.json
 # A pluck that the rig file marks as held out is not fitted for all that.
 perl -0pi -e 's/(name = "pluck-2")/$1\nhold_out = true/' pair/rigs/*/rig.toml
-expect 0 diagnose pair/rigs/* "${few[@]}" "${no_contact[@]}" --json marked.json
+expect 0 diagnose pair/rigs/* $few $no_contact --json marked.json
 is_silent_about "noise is slow"
 perl -MJSON::PP -e '
   local $/;

@@ -4,12 +4,8 @@
 
 expect 0 challenge --out wide --seed 811017 --count 17 --effect finite-contact-width --shard 5/17 --only-make
 same "$(ls wide/rigs)" challenge-81101700016
-others=() # what takes long to seek and is not what is tested
-for effect in second-polarization point-mass point-damper support-resonance sensor-nonlinearity slow-release sympathetic-string phantom-partials \
-  tension-modulation torsion elasto-plastic-friction creep speed-ripple normal-force-ripple thermal-friction; do
-  others+=(--without "$effect")
-done
-expect 0 diagnose wide/rigs/challenge-81101700016 "${others[@]}" --json wide.json
+expect 0 diagnose wide/rigs/challenge-81101700016 --json wide.json $(without $elsewhere point-damper tension-modulation torsion \
+  elasto-plastic-friction creep speed-ripple normal-force-ripple thermal-friction)
 says ": explained" "The bow touches the string over"
 perl -MJSON::PP -e '
   local $/;

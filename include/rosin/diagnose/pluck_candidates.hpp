@@ -225,8 +225,7 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
   }
 }
 
-/// The values of a fit whose last effect sits on the string, with it at its mirror image: of a heavy load the partials of the first
-/// periods hardly tell one from the other.
+/// The values of a fit whose last effect sits on the string, with it at its mirror image, which moves the partials by as much.
 inline std::optional<Eigen::VectorXd> mirrored(const scene_fit& fit) {
   const auto& parameters = fit.effects.back().parameters;
   if (parameters.empty() || parameters[0].name != "position") return std::nullopt;
