@@ -106,6 +106,7 @@ private:
   template <class Passage>
   [[nodiscard]] std::vector<std::invoke_result_t<Passage, double>> by_bins(double edge_Hz, const Passage& at) const {
     std::vector<std::invoke_result_t<Passage, double>> out;
+    out.reserve(static_cast<std::size_t>(edge_Hz / near_.bin_Hz()) + 1);
     for (std::size_t k = 0; static_cast<double>(k) * near_.bin_Hz() < edge_Hz; ++k)
       out.push_back(at(static_cast<double>(k) * near_.bin_Hz()));
     return out;
