@@ -213,7 +213,11 @@ rosin::outcome<calibration_set> read_calibration(const std::string& path) {
   if (!in && document.is_discarded()) return rosin::failure{path + ": cannot be read"};
   if (document.is_discarded()) return rosin::failure{path + ": is not JSON"};
   try {
-    if (document.at("format") != "calibration" || document.at("kind") != "force-plucks" || document.at("schema") != 1)
+    const json none;
+    const auto is = [&](const char* key, const json& value) {
+      return document.is_object() && document.value(key, none) == value;
+    };
+    if (!is("format", "calibration") || !is("kind", "force-plucks") || !is("schema", 1))
       return rosin::failure{path + ": is no calibration by force plucks (schema 1), as `rosin fit --json` writes it"};
     calibration_set out;
     out.from = path;

@@ -59,6 +59,9 @@ rosin::outcome<std::vector<compared>> compare(const options& given, const rosin:
     const auto* r = result.find(name);
     const auto* t = truth.find(name);
     if (r == nullptr || t == nullptr) continue;
+    if (const auto gap = gap_between(r->values, t->values))
+      return rosin::failure{(std::isfinite(r->values[*gap]) ? given.truth : given.result) + ": " + name + ": no value in row " +
+                            std::to_string(*gap + 1) + ", between rows that have one"};
     auto one = compare_columns(name, r->values, t->values, rate_Hz, window);
     if (one.rms_truth > 0) out.push_back(std::move(one));
   }
@@ -131,8 +134,8 @@ void add_compare(CLI::App& app, exit_code& result) {
   add_json_option(*command, given->json);
   command->footer(
       "Delta is Eq. (12) of Woodhouse, Schumacher & Garoff (2000): sqrt(sum (a - b)^2 / (sum a^2 + sum b^2)), means taken out.\n"
-      "A common scale (the wires' strength, which no recording tells) is stated apart. Empty fields are left out, and so is\n"
-      "the response time of the low-pass at either end.");
+      "A common scale (the wires' strength, which no recording tells) is stated apart. Empty fields at the beginning and at\n"
+      "the end are left out, and so is the response time of the low-pass at either end; one in between is an error.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

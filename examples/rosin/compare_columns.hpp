@@ -24,8 +24,11 @@ struct compared {
 /// 20 kHz, or what the sampling rate has room for, and from half as much again on nothing.
 [[nodiscard]] rosin::band compared_band(double rate_Hz, std::optional<double> pass_Hz = {}, std::optional<double> stop_Hz = {});
 
+/// The first row between known ones in which either is not.
+[[nodiscard]] std::optional<std::size_t> gap_between(const std::vector<double>& a, const std::vector<double>& b);
+
 /// Over the stretch in which both are known (not NaN), less the low-pass's response at either end; rms_truth 0 where that is too
-/// short.
+/// short or has a gap.
 [[nodiscard]] compared compare_columns(const std::string& name, const std::vector<double>& result,
                                        const std::vector<double>& truth, double rate_Hz, const rosin::band& window);
 

@@ -43,6 +43,16 @@ std::array<double, 2> value_of(const json& calibration, const std::string& name)
   return {it->value("value", std::numeric_limits<double>::quiet_NaN()), it->value("sd", 0.0)};
 }
 
+/// What its inputs' checksums say of the rig file that is used now: a take more is no other rig, but another tension is.
+std::string doubt_of(const json& diagnosis, const rosin::rig& rig, const provenance& from) {
+  const json inputs = diagnosis.value("provenance", json::object()).value("inputs", json::array());
+  const auto of_rig =
+      std::find_if(from.inputs.begin(), from.inputs.end(), [&](const input_file& f) { return f.path == rig.file; });
+  const auto is_it = [&](const json& f) { return f.value("sha256", std::string{}) == of_rig->sha256; };
+  if (of_rig == from.inputs.end() || inputs.empty() || std::any_of(inputs.begin(), inputs.end(), is_it)) return {};
+  return "was made of another rig file, or of " + rig.file + " before it was changed; what it says holds for that one";
+}
+
 /// A diagnosis may have left a pluck out that contradicts the others, and fitted one that was to be held out.
 void keep_calibrated(const json& calibration, plucks_to_diagnose& plucks) {
   plucks.takes.insert(plucks.takes.end(), plucks.held.begin(), plucks.held.end());
@@ -68,13 +78,14 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
   if (!calibration.contains("fundamental_Hz")) return wrong("calibration has no \"fundamental_Hz\"");
   keep_calibrated(calibration, *plucks);
   if (plucks->takes.empty()) return wrong("calibration has none of the plucks that " + rig.file + " names");
-  corrected_model out{path, {}, 0, 0, {}, {}, from};
+  corrected_model out{path, {}, 0, 0, {}, {}, from, {}};
   const rosin::pluck_layout layout(plucks->takes, plucks->options, plucks->guess.ends);
   const double rate = plucks->takes.front().rate_Hz,
                pitch = value_of(calibration, layout.name(rosin::pluck_layout::fundamental))[0];
   const rosin::string_facts facts{
       pitch, rate, 0.45 * rate, values.impedance_Ns_m->value, values.length_m ? values.length_m->value : 0, plucks->takes.size()};
   try {
+    out.doubt = doubt_of(document, rig, from);
     auto effects = effects_of(document, rosin::catalogue_without({}, facts, {0.3 * rate, 0.45 * rate}), out);
     Eigen::Index count = layout.size();
     for (const auto& e : effects) count += static_cast<Eigen::Index>(e.parameters.size());
@@ -100,6 +111,8 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
         {plucks->takes, plucks->guess, plucks->options, layout}, {}, {}, {}, {}, {}, {}, {}, true, true, 0, 0, 0, {}};
     d.declared.layout = layout, d.declared.value = value.head(layout.size());
     d.best.effects = std::move(effects), d.best.value = value, d.best.sd = sd;
+    for (const std::size_t c : {0U, 1U})
+      if (const double noise_N = value_of(calibration, channel_noise[c])[0]; noise_N > 0) d.best.quality.noise[c] = noise_N;
     d.best.covariance = sd.array().square().matrix().asDiagonal();
     out.plucks = std::make_shared<const rosin::pluck_diagnosis>(std::move(d));
   } catch (const json::exception& error) {

@@ -23,6 +23,7 @@ struct corrected_model {
   std::vector<std::string> effects;
   std::vector<std::string> passed_over;  ///< of the contact: a reconstruction does not need them
   provenance from;
+  std::string doubt;  ///< whether it is of this rig file; empty if it is
 };
 
 [[nodiscard]] rosin::outcome<corrected_model> read_model(const std::string& path, const rosin::rig& rig, provenance& from);

@@ -15,6 +15,9 @@
 
 namespace tool {
 
+/// Names in a diagnosis's calibration of what the plucks leave in each channel, rms, in its nominal newtons.
+inline constexpr std::array<const char*, 2> channel_noise{"noise_near_N", "noise_far_N"};
+
 /// One bowed take as the plucks' calibration and what they tell of the sensors make it.
 struct diagnosed_stroke {
   std::string name;

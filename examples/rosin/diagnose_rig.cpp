@@ -126,6 +126,8 @@ void add_calibration(const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
       }
       ++at;
     }
+  for (const std::size_t c : {0U, 1U})
+    d.calibration.push_back({channel_noise[c], p.best.quality.noise[c], std::numeric_limits<double>::quiet_NaN()});
 }
 
 /// Drift counts where it takes away most of what the two versions of the force part by, and a moved contact does not do as well.

@@ -25,6 +25,7 @@
 
 #include <rosin/version.hpp>
 
+#include <cmath>
 #include <exception>
 #include <iostream>
 
@@ -41,6 +42,21 @@ void keep_freed_memory() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
 #endif
+}
+
+/// "nan" is a number that no comparison refuses: neither is it too large nor too small for a range.
+void ask_for_finite_numbers(CLI::App& command) {
+  const CLI::Validator finite{[](const std::string& text) {
+                                double value = 0;
+                                const bool number = CLI::detail::lexical_cast(text, value);
+                                return number && !std::isfinite(value) ? text + " is no finite number" : std::string{};
+                              },
+                              ""};
+  for (CLI::Option* option : command.get_options({}))
+    if (const auto& takes = option->get_type_name(); takes.find("POSITIVE") != std::string::npos ||
+                                                     takes.find("NONNEGATIVE") != std::string::npos ||
+                                                     takes.find(" in [") != std::string::npos)
+      option->check(finite);
 }
 
 tool::exit_code run(int argc, char** argv) {
@@ -62,6 +78,7 @@ tool::exit_code run(int argc, char** argv) {
   tool::add_compare(app, result);
   tool::add_challenge(app, result);
   tool::add_validate(app, result);
+  for (CLI::App* command : app.get_subcommands({})) ask_for_finite_numbers(*command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

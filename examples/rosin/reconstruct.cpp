@@ -124,7 +124,9 @@ exit_code run(const options& given, provenance from) {
   std::vector<std::string> warnings = folder->notes, assumed = fitted ? fitted->assumed : rosin::values_of(rig).assumed;
   for (const auto& f : read->check.findings)
     if (f.level != rosin::severity::note) warnings.push_back(sentence(rig, f));
-  if (fitted) warnings.insert(warnings.end(), fitted->warnings.begin(), fitted->warnings.end());
+  if (how.model && !how.model->doubt.empty()) warnings.push_back(how.model->file + ": " + how.model->doubt);
+  if (fitted)
+    for (const auto& line : fitted->warnings) warnings.push_back((how.model ? "with the declared model: " : "") + line);
   made->warnings.insert(made->warnings.begin(), warnings.begin(), warnings.end());
   made->assumed.insert(made->assumed.begin(), assumed.begin(), assumed.end());
   if (how.model) made->assumed.push_back(said_of(*how.model));

@@ -132,9 +132,10 @@ std::vector<std::pair<std::string, std::string>> facts_of(const take_reconstruct
   if (r.domains_differ)
     out.emplace_back("time against frequency domain", "Delta of the force " + in_digits(*r.domains_differ, "%.5f"));
   if (!r.rod_m_s.empty())
-    out.emplace_back("slips", std::to_string(r.slips.size()) + " in all; " + in_digits(r.slips_per_period(), "%.2f") +
-                                  " a period and " + in_digits(100 * slipping_fraction(r, part), "%.1f") +
-                                  " % of the time in the steady part (" + slipping_means(r) + ")");
+    out.emplace_back("slips", std::to_string(r.slips.size()) + " in all; " +
+                                  (r.period_s > 0 ? in_digits(r.slips_per_period(), "%.2f") + " a period and " : "") +
+                                  in_digits(100 * slipping_fraction(r, part), "%.1f") + " % of the time in the steady part (" +
+                                  slipping_means(r) + ")");
   if (r.lifted) out.emplace_back("free decay at the end", decay_text(r));
   for (auto& fact : facts_of(slips_of(r), r)) out.push_back(std::move(fact));
   for (const auto& c : r.comparisons)

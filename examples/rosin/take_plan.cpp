@@ -114,7 +114,14 @@ std::string rig_file_writer::free_name(const std::string& kind) const {
 }
 
 rosin::outcome<rosin::rig> rig_file_writer::with(const take_plan& take) const {
-  return rosin::parse_rig(text_ + block(take, {}), path());
+  auto rig = rosin::parse_rig(text_ + block(take, {}), path());
+  const bool unfinished = take.kind == "bow"     ? !take.speed_m_s || !take.normal_force_N
+                          : take.kind == "pluck" ? !take.force_N
+                                                 : false;
+  if (!rig && unfinished && rosin::parse_rig(text_, path()))
+    return rosin::failure{take.kind == "bow" ? "a bowed take needs --speed and --normal-force"
+                                             : "a pluck needs --wire, its nominal force"};
+  return rig;
 }
 
 std::optional<rosin::failure> rig_file_writer::put(const take_plan& take, const std::vector<std::string>& remarks) {

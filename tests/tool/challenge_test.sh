@@ -80,6 +80,11 @@ perl -MJSON::PP -e '
   my $said = decode_json(<STDIN>);
   die unless $said->{verdict} eq "explained" && @{ $said->{missing} } == 1 && $said->{missing}[0]{effect} eq "tension-modulation";
   die if @{ $said->{fit}{held_out} }' <pair.json
+# It reconstructs with the sensors' noise that the plucks showed, and says so where the rig file is not the one that was diagnosed.
+expect 0 reconstruct pair/rigs/* --take bow-1 --model pair.json --out pair-bow-1.csv
+says "sensor noise"
+is_silent_about "sensor noise 0,"
+is_silent_about "another rig file"
 # A pluck that the rig file marks as held out is not fitted for all that.
 perl -0pi -e 's/(name = "pluck-2")/$1\nhold_out = true/' pair/rigs/*/rig.toml
 expect 0 diagnose pair/rigs/* $few $no_contact --json marked.json
@@ -88,6 +93,8 @@ perl -MJSON::PP -e '
   local $/;
   my $said = decode_json(<STDIN>);
   die unless $said->{verdict} eq "unexplained" && "@{ $said->{fit}{held_out} }" eq "pluck-2";' <marked.json
+expect 0 reconstruct pair/rigs/* --take bow-1 --model pair.json --out pair-bow-1.csv --force
+says "was made of another rig file"
 
 # A part is a part of the names, whatever else is in the folder: three rigs that cannot even be read.
 for n in 1 3 4; do mkdir -p parts/rigs/rig-$n; echo "schema = 1" >parts/rigs/rig-$n/rig.toml; done

@@ -136,6 +136,11 @@ expect 2 reconstruct rig --take bow-1 --pass 20000 --stop 30000
 says "half the sampling rate"
 expect 2 reconstruct rig --take bow-1 --calibration rig/rig.toml
 says "is not JSON"
+echo '{"missing": []}' >other.json
+expect 2 reconstruct rig --take bow-1 --calibration other.json
+says "other.json: is no calibration by force plucks"
+expect 2 reconstruct rig --take bow-1 --pass nan
+says "nan is no finite number"
 echo '{"format": "calibration", "kind": "force-plucks", "schema": 1}' >empty.json
 expect 2 reconstruct rig --take bow-1 --calibration empty.json
 expect 2 reconstruct rig --take bow-1 --model empty.json

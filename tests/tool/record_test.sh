@@ -54,7 +54,9 @@ says "new/rig.toml: is not there; --like names a rig file"
 expect 2 record rig --like described --source described/quiet.wav --kind quiet
 says "exists already; --like is for a new rig"
 expect 2 record rig --source described/quiet.wav --kind bow
-says "speed_m_s: is missing" "normal_force_N: is missing"
+says "a bowed take needs --speed and --normal-force"
+expect 2 record rig --source described/quiet.wav --kind pluck
+says "a pluck needs --wire"
 expect 2 record rig --source described/quiet.wav --take pluck-1 --kind pluck --wire 1
 says "is the name of an earlier take"
 expect 2 record rig --source none.wav --kind quiet

@@ -353,4 +353,9 @@ sed 's/^# truth of take bow-1/# truth of take bow-2/' made-truth/bow-1.csv >othe
 expect 2 compare other-take.csv made-truth/bow-1.csv
 says "other-take.csv is of take bow-2, made-truth/bow-1.csv of take bow-1: not the same take"
 expect 2 compare made-truth/truth.json made-truth/bow-1.csv
+awk -F, '/^[0-9]/ && ++n == 1000 { $2 = "" } { print }' OFS=, made-truth/bow-1.csv >gap.csv
+expect 2 compare gap.csv made-truth/bow-1.csv --at-most 0.01
+says "gap.csv: force_N: no value in row 1000, between rows that have one"
+expect 2 compare made-truth/bow-1.csv scaled.csv --at-most nan
+says "nan is no finite number"
 finish

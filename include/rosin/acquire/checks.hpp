@@ -146,7 +146,7 @@ inline void check_bow(take_check& out, const rig& r, const take& t) {
   if (counts && near < 0 && far < 0)
     out.add(severity::warning, "bowed-backwards", "", 0, out.duration_s,
             "both mean forces are negative: the bow moves the other way",
-            "forces are positive the way the bow moves; turn both polarities round, or read the result with the sign turned");
+            "forces are positive the way the bow moves: turn both polarities round, or slips, loops and heat will be wrong");
   else if (counts && near * far < 0)
     out.add(severity::error, "inverted-channel", near < 0 ? "near" : "far", 0, out.duration_s,
             "the mean forces on the two ends have opposite signs", "turn the polarity of one channel round");
