@@ -43,7 +43,7 @@ std::array<double, 2> value_of(const json& calibration, const std::string& name)
   return {it->value("value", std::numeric_limits<double>::quiet_NaN()), it->value("sd", 0.0)};
 }
 
-/// What its inputs' checksums say of the rig file that is used now: a take more is no other rig, but another tension is.
+/// Whether its inputs have the checksum of the rig file that is used now; empty where they do, or tell none.
 std::string doubt_of(const json& diagnosis, const rosin::rig& rig, const provenance& from) {
   const json inputs = diagnosis.value("provenance", json::object()).value("inputs", json::array());
   const auto of_rig =
