@@ -25,7 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct options {
-  std::string out, effect, shard = "1/1";
+  std::string out, shard = "1/1";
+  std::vector<std::string> hidden;
   std::uint64_t seed = 1;
   int count = 0, effects = 1;
   double strength = 1, noise_dB = 0;
@@ -47,7 +48,8 @@ std::string describe(const options& o) {
   if (o.noise_dB > 0) out += " --noise-db " + in_digits(o.noise_dB);
   if (!o.pitch_Hz.empty()) out += " --pitch " + in_digits(o.pitch_Hz[0]) + " " + in_digits(o.pitch_Hz[1]);
   if (o.leave_out) out += " --leave-out";
-  return out + (o.effect.empty() ? "`" : " --effect " + o.effect + "`");
+  for (const auto& name : o.hidden) out += " --effect " + name;
+  return out + "`";
 }
 
 /// A rig belongs to the same part on every machine, whatever else is in the folder: by the number that its name ends with, or by
@@ -70,7 +72,7 @@ std::optional<rosin::failure> make(const options& given, const places& to, std::
   for (int i = 0; i < given.count; ++i, bar.step()) {
     const std::uint64_t seed = given.seed * 100000 + static_cast<std::uint64_t>(i);
     if (seed % shards != shard) continue;
-    const auto rig = draw_challenge({seed, given.effects, given.strength, given.noise_dB, given.effect, given.pitch_Hz});
+    const auto rig = draw_challenge({seed, given.effects, given.strength, given.noise_dB, given.hidden, given.pitch_Hz});
     const auto truth = to.truth / (rig.name + ".json");
     if (fs::exists(truth) && (!given.forces || fs::exists(true_forces(to.truth, rig.name, "bow-1")))) continue;
     if (auto why = write_challenge(rig, to.rigs / rig.name, true, given.forces ? to.truth : fs::path{})) return why;
@@ -151,17 +153,26 @@ std::vector<rig_score> score_all(const places& at) {
   return out;
 }
 
+/// Why these cannot be hidden together, if they cannot.
+std::optional<rosin::failure> not_hideable(const std::vector<std::string>& names) {
+  const auto knows = [](const std::vector<std::string>& all, const std::string& name) {
+    return std::find(all.begin(), all.end(), name) != all.end();
+  };
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (!knows(hideable(), *name) && !knows(hideable_on_request(), *name)) return rosin::failure{*name + ": cannot be hidden"};
+    for (auto other = names.begin(); other != name; ++other)
+      if (exclude_each_other(*other, *name)) return rosin::failure{*other + " and " + *name + ": a rig has one of them"};
+  }
+  return std::nullopt;
+}
+
 exit_code run(const options& given, const provenance& from) {
   std::size_t shard = 0, shards = 1;
   if (char slash = 0;
       !(std::istringstream{given.shard} >> shard >> slash >> shards) || slash != '/' || shard == 0 || shard > shards)
     return fail("--shard " + given.shard + ": K/N with K from 1 to N is needed", given.json);
   --shard;
-  const auto knows = [&](const std::vector<std::string>& names) {
-    return std::find(names.begin(), names.end(), given.effect) != names.end();
-  };
-  if (!given.effect.empty() && !knows(hideable()) && !knows(hideable_on_request()))
-    return fail("--effect " + given.effect + ": cannot be hidden", given.json);
+  if (const auto why = not_hideable(given.hidden)) return fail("--effect " + why->message, given.json);
   const places at{given.out, given.leave_out};
   if (const auto why = make(given, at, shard, shards)) return fail(why->message, given.json);
   if (given.only_make) return exit_code::ok;
@@ -192,9 +203,11 @@ void add_challenge(CLI::App& app, exit_code& result) {
       ->capture_default_str();
   command->add_option("--effects", given->effects, "Hidden in each rig")->check(CLI::Range(0, 2))->capture_default_str();
   command
-      ->add_option("--effect", given->effect,
-                   "This one and no other; besides those that are drawn: " + CLI::detail::join(hideable_on_request(), ", "))
-      ->type_name("NAME");
+      ->add_option("--effect", given->hidden,
+                   "This one and no other, or, given twice, these two; besides those that are drawn: " +
+                       CLI::detail::join(hideable_on_request(), ", "))
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   command->add_option("--strength", given->strength, "1: as in a laboratory in which one thing went wrong")
       ->check(CLI::Range(0.001, 10.0))
       ->capture_default_str();

@@ -183,6 +183,12 @@ const std::vector<std::string>& hideable() {
   return names;
 }
 
+bool exclude_each_other(const std::string& one, const std::string& other) {
+  const auto ripple = [](const std::string& n) { return n.find("ripple") != std::string::npos; };
+  const auto law = [](const std::string& n) { return n == "thermal-friction" || n == "elasto-plastic-friction"; };
+  return one == other || (ripple(one) && ripple(other)) || (law(one) && law(other));
+}
+
 challenge_rig draw_challenge(const challenge_choice& choice) {
   challenge_rig r;
   r.name = "challenge-" + std::to_string(choice.seed);
@@ -193,14 +199,10 @@ challenge_rig draw_challenge(const challenge_choice& choice) {
   r.bowed = r.base.rig;
   const auto& all = hideable();
   const auto any = [&] { return all[static_cast<std::size_t>(s.uniform() * static_cast<double>(all.size()))]; };
-  std::vector<std::string> names;
-  if (!choice.only.empty()) names.push_back(choice.only);
+  std::vector<std::string> names = choice.wanted;
   while (static_cast<int>(names.size()) < choice.effects) {
     const auto name = any();
-    const auto ripple = [](const std::string& n) { return n.find("ripple") != std::string::npos; };
-    const auto law = [](const std::string& n) { return n == "thermal-friction" || n == "elasto-plastic-friction"; };
-    if (std::none_of(names.begin(), names.end(),
-                     [&](const auto& n) { return n == name || (ripple(n) && ripple(name)) || (law(n) && law(name)); }))
+    if (std::none_of(names.begin(), names.end(), [&](const auto& n) { return exclude_each_other(n, name); }))
       names.push_back(name);
   }
   if (choice.effects == 0) names.clear();

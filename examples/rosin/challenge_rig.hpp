@@ -53,11 +53,11 @@ struct challenge_rig {
 
 struct challenge_choice {
   std::uint64_t seed = 1;
-  int effects = 1;                 ///< 0 to 2
-  double strength = 1;             ///< 1: as strong as in a bad laboratory
-  double noise_dB = 0;             ///< 0: drawn; else peak of the loudest pluck over the noise's standard deviation
-  std::string only;                ///< this effect and no other
-  std::vector<double> pitch_Hz{};  ///< of the strings, lowest and highest; none: 280 to 870
+  int effects = 1;                  ///< 0 to 2
+  double strength = 1;              ///< 1: as strong as in a bad laboratory
+  double noise_dB = 0;              ///< 0: drawn; else peak of the loudest pluck over the noise's standard deviation
+  std::vector<std::string> wanted;  ///< these, and of `effects` no others while they are as many
+  std::vector<double> pitch_Hz{};   ///< of the strings, lowest and highest; none: 280 to 870
 };
 
 inline double evenly_in_log(rosin::gaussian_source& s, double low, double high) {
@@ -75,6 +75,8 @@ inline double place(rosin::gaussian_source& s, const challenge_rig& r) {
   }
 }
 
+/// The same effect, or two of which a contact has one.
+[[nodiscard]] bool exclude_each_other(const std::string& one, const std::string& other);
 /// Names that can be hidden, in the order of the catalogue.
 [[nodiscard]] const std::vector<std::string>& hideable();
 /// And these, where they are asked for.

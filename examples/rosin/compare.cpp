@@ -122,10 +122,14 @@ void add_compare(CLI::App& app, exit_code& result) {
   command->add_option("TRUTH", given->truth, "Table of `rosin simulate`, or another reconstruction of the same take")
       ->required()
       ->type_name("FILE.csv");
-  command->add_option("--pass", given->pass_Hz, "Both are low-passed: end of the pass band, 20000 if left out")
+  command
+      ->add_option("--pass", given->pass_Hz,
+                   "Both are low-passed: end of the pass band; left out: 20000, at most 0.3 of the rate")
       ->check(CLI::PositiveNumber)
       ->type_name("HZ");
-  command->add_option("--stop", given->stop_Hz, "Nothing is left from here on, 1.5 times the pass band if left out")
+  command
+      ->add_option("--stop", given->stop_Hz,
+                   "Nothing is left from here on; left out: 1.5 times the pass band, at most half-way to half the rate")
       ->check(CLI::PositiveNumber)
       ->type_name("HZ");
   command->add_option("--at-most", given->at_most, "Exit with 1 if force or velocity differs by more, after the common scale")

@@ -148,9 +148,14 @@ std::string conditions(const sweep_options& given, const sweep_setup& setup) {
   const auto& s = setup.rig.string;
   out << "plane " << given.plane << ", position " << (given.plane == "guettler" ? std::to_string(setup.position) : "x")
       << ", speed " << setup.speed_m_s << " m/s, " << given.periods << " periods at " << given.rate_Hz << " Hz, string "
-      << s.fundamental_Hz << " Hz " << s.tension_N << " N " << s.bending_stiffness_Nm2 << " N m2, torsion "
-      << setup.rig.torsion.speed_ratio << " " << setup.rig.torsion.impedance_ratio << " " << setup.rig.torsion.quality
-      << ", friction " << setup.friction.to_json().dump();
+      << s.fundamental_Hz << " Hz " << s.length_m << " m " << s.tension_N << " N " << s.bending_stiffness_Nm2 << " N m2, loss "
+      << s.loss.quality << " " << s.loss.air_sqrt_Hz << " " << s.loss.internal_s << ", torsion " << setup.rig.torsion.speed_ratio
+      << " " << setup.rig.torsion.impedance_ratio << " " << setup.rig.torsion.quality << ", friction "
+      << setup.friction.to_json().dump();
+  for (const auto& end : setup.ends) {
+    out << ", end";
+    for (const auto& m : end.modes) out << " " << m.frequency_Hz << " Hz " << m.q << " " << m.per_mass_per_s << " per s";
+  }
   return out.str();
 }
 

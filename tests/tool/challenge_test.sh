@@ -31,7 +31,8 @@ perl -MJSON::PP -e '
   die "a correction that is none\n" if @{$c->{after}} || !@{$c->{before}}' <drift.json
 
 # Samples that a recorder loses are missing from one pluck, and from both its channels.
-expect 0 challenge --out lost --seed 7 --count 1 --effect dropouts --only-make
+expect 0 challenge --out lost --seed 7 --count 1 --effect dropouts --effect mains-hum --only-make
+same "$(perl -MJSON::PP -e 'local $/; print join " ", map { $_->{effect} } @{ decode_json(<STDIN>)->{effects} }' <lost/truth/challenge-700000.json)" "dropouts mains-hum"
 missing=$(perl -MJSON::PP -e 'local $/; print decode_json(<STDIN>)->{effects}[0]{parameters}{samples}' <lost/truth/challenge-700000.json)
 sizes=$(stat -c %s lost/rigs/*/pluck-*.wav | sort -n | uniq -c | awk '{ printf "%s:%s ", $1, $2 }')
 same "$sizes" "1:$((71724 - 4 * missing)) 2:71724 "
@@ -105,6 +106,8 @@ same "$(ls parts/diagnoses | wc -l)" 3
 
 expect 2 challenge --out c --count 1 --effect gremlins
 says "gremlins"
+expect 2 challenge --out c --count 1 --effect speed-ripple --effect normal-force-ripple
+says "speed-ripple and normal-force-ripple: a rig has one of them"
 expect 2 challenge --out c --count 1 --shard 3/2
 says "3/2"
 finish

@@ -52,6 +52,12 @@ cmp whole.csv stopped.csv || failures=$((failures + 1))
 # another plane is not mixed in
 expect 2 sweep "${plane[@]}" --speed 0.3 --out stopped.csv
 says "stopped.csv: holds another plane; --force overwrites it"
+for changed in 's/^quality = 300/quality = 310/' 's/^length_m = 0.33/length_m = 0.34/' \
+  '$a [terminations]\nfar = { modes = [{ frequency_Hz = 2400, q = 20, mass_kg = 0.01 }] }'; do
+  sed "$changed" rig.toml >other.toml
+  expect 2 sweep other.toml "${plane[@]:1}" --out stopped.csv
+  says "stopped.csv: holds another plane; --force overwrites it"
+done
 expect 2 sweep --merge part1.csv rig.toml --out new.csv
 says "rig.toml: is no file of rosin sweep"
 

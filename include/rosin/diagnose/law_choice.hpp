@@ -10,7 +10,7 @@
 //     elasto-plastic   while it sticks v_r = -(s / (s0 (1 + s d))) f; while it slips f = N mu(|v_r|)
 //
 // All are measured on the same samples, against the curve: nats of independent samples, of all takes and of each take as
-// predicted from the others. What shows bristles is the sticking, not the slip: they settle within mu N / s0, micrometres, of
+// predicted from the others. What shows bristles is the sticking, not the slip: they settle within mu N / s0, tens of micrometres, of
 // which a slip has hundreds. s0 is tried as one number and in proportion to the normal force.
 //
 #pragma once

@@ -84,7 +84,7 @@ public:
     return {half_delay_s > 0 ? std::min(window.edge_Hz, 0.22 / half_delay_s) : window.edge_Hz};
   }
 
-  /// where the piece between both places is a quarter wave long, their sum is all noise
+  /// where the piece between both places is half a wave long, their sum is all noise
   static constexpr double pole_width = 0.1;
 
 private:
