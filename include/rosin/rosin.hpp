@@ -219,6 +219,7 @@
 #include <rosin/diagnose/pluck_search.hpp>
 #include <rosin/diagnose/rattle_effect.hpp>
 #include <rosin/diagnose/rattling_string.hpp>
+#include <rosin/diagnose/rod_beside_bristles.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/diagnose/scene_lines.hpp>
 #include <rosin/diagnose/scene_plucks.hpp>

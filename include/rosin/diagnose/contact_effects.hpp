@@ -18,11 +18,13 @@
 #include <rosin/diagnose/contact_slip_effects.hpp>
 #include <rosin/diagnose/contact_stick_effects.hpp>
 #include <rosin/diagnose/contact_width.hpp>
+#include <rosin/diagnose/rod_beside_bristles.hpp>
 
 namespace rosin {
 
 struct contact_findings {
-  static constexpr double least_needed = 40;  ///< to gain, in nats, where noise is all that speaks against an effect
+  static constexpr double least_needed = 40;       ///< to gain, in nats, where noise is all that speaks against an effect
+  static constexpr double of_independent = 0.035;  ///< of the samples, what imperfect models of a contact as declared gain
   /// of what there was, by what is an answer: on rigs of another simulator at most 0.4 where all was named right, 0.8 where not
   static constexpr double most_left = 0.5;
   /// best first: those that stand, then by gain, those without determined parameters last
@@ -41,6 +43,7 @@ struct contact_findings {
 
   /// What an effect has to gain, in nats, so that it counts.
   [[nodiscard]] double needed(const contact_hypothesis& h) const {
+    if (h.of_samples > 0) return std::max(least_needed, of_independent * h.of_samples);
     if (h.peculiar) return std::min(threshold, least_needed);
     return h.effect.find("ripple") != std::string::npos || h.statistic == "friction-residual" ? tone_threshold : threshold;
   }
@@ -93,7 +96,8 @@ inline void common_share(std::vector<contact_hypothesis>& hypotheses, const std:
 [[nodiscard]] inline contact_hypothesis stick_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes,
                                                          const std::string& effect) {
   if (effect == "torsion") return torsion_hypothesis(bench);
-  if (effect == "rod-resonance") return rod_hypothesis(bench);
+  if (effect == "rod-resonance")
+    return bench.model().bristle_stiffness_N_m ? rod_beside_bristles(bench, takes) : rod_hypothesis(bench);
   if (effect == "elasto-plastic-friction") return bristle_hypothesis(bench, takes);
   if (effect == "creep") return creep_hypothesis(bench, takes);
   return speed_ripple_hypothesis(bench);
@@ -105,6 +109,7 @@ inline void reconsider_damping(stick_bench& bench, const std::vector<contact_tak
   const auto best =
       std::max_element(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.density < b.density; });
   if (best == hypotheses.end() || best->gain < 100 || best->effect == "torsion" || !bench.model().torsion) return;
+  if (best->of_samples > 0) return;  // on a bench of its own, with a damping of its own
   const double before = bench.fit().density, held_out = bench.fit().held_out;
   torsion_damping likeliest = bench.damping();
   for (const auto another : {otherwise_shared, otherwise_dispersed}) {
@@ -233,7 +238,7 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
     if (auto width = width_hypothesis(sticks, takes)) out.hypotheses.push_back(*std::move(width));
   detail::add_stick_hypotheses(sticks, takes, out);
   detail::add_slip_hypotheses(sticks, takes, out);
-  out.threshold = std::max(contact_findings::least_needed, 0.035 * out.independent);
+  out.threshold = std::max(contact_findings::least_needed, contact_findings::of_independent * out.independent);
   out.tone_threshold = std::max(30.0, 0.01 * out.independent);
   detail::keep_one_ripple(out);
   std::stable_sort(out.hypotheses.begin(), out.hypotheses.end(),

@@ -91,12 +91,15 @@ struct rod_fit {
 };
 
 /// Gauss-Newton on rods of unit mass added to the declared equation; theta = ln(frequency), ln(q) stays between `low` and `high`.
+/// Where it would still go after the last step is part of the doubt.
 [[nodiscard]] inline rod_fit fit_rod(stick_bench& bench, Eigen::VectorXd theta, double size, const Eigen::VectorXd& low,
                                      const Eigen::VectorXd& high, int steps) {
   const auto rod = [](const Eigen::VectorXd& at) { return rod_mobility{std::exp(at[0]), std::exp(at[1])}; };
   rod_fit out{.theta = theta, .size = size, .covariance = {}};
-  Eigen::VectorXd reach = Eigen::VectorXd::Constant(theta.size(), 0.3), last = Eigen::VectorXd::Zero(theta.size());
+  constexpr double farthest = 0.3;
+  Eigen::VectorXd reach = Eigen::VectorXd::Constant(theta.size(), farthest), last = Eigen::VectorXd::Zero(theta.size());
   for (int step = 0; step <= steps; ++step) {
+    if (step == steps) reach.setConstant(farthest);
     stick_design d = bench.declared();
     for (std::size_t t = 0; t < d.rows.size(); ++t) {
       auto& record = bench.records()[t];
@@ -115,8 +118,9 @@ struct rod_fit {
     else out.fit.solution = bounded_regression(d, bench.floor_m_s(), held);
     out.size = out.fit.solution.shared[first];
     out.covariance = out.fit.solution.covariance.bottomRightCorner(theta.size() + 1, theta.size() + 1);
-    if (step == steps || !(out.size > 0)) break;
     const Eigen::VectorXd move = out.fit.solution.shared.tail(theta.size());
+    if (step == steps) out.covariance.diagonal().tail(theta.size()) += move.cwiseAbs2();
+    if (step == steps || !(out.size > 0)) break;
     for (Eigen::Index k = 0; k < theta.size(); ++k)
       if (move[k] * last[k] < 0) reach[k] *= 0.4;  // to and fro
     out.theta = (out.theta + move).cwiseMax(low).cwiseMin(high);
@@ -180,7 +184,7 @@ template <std::size_t N>
   for (auto& r : bench.records()) force.push_back(r.force_N());
   const double rate = bench.records().front().take().rate_Hz;
   constexpr double lowest_Hz = 80, lowest_q = 3.9, highest_q = 300;
-  const double highest_Hz = 0.16 * rate;
+  const double highest_Hz = std::min(0.16 * rate, 0.5 * bench.records().front().window().edge_Hz);
   double best = 0, f_best = 1000, q_best = 10;
   const auto attempt = [&]<std::size_t N>(double f0, const std::array<double, N>& qs) {
     std::array<std::vector<std::vector<double>>, N> columns;

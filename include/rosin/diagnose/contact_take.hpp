@@ -75,7 +75,9 @@ struct contact_model {
 namespace contact_faults {
 inline constexpr double rod_frequency = 6e-4, rod_q = 0.012, rod_mass = 0.0164, rod_scatter = 1.5, ripple = 0.0135,
                         slip_tone = 7e-5, bristles = 0.035, creep = 0.1;
-}
+/// Of a rod under bristles, whose flow is followed to first order only.
+inline constexpr double bristly_rod_frequency = 2e-3, bristly_rod_q = 0.12, bristly_rod_mass = 0.07;
+}  // namespace contact_faults
 
 struct contact_parameter {
   std::string name;  ///< as in the catalogue
@@ -101,7 +103,8 @@ struct contact_hypothesis {
   double noise = 0;         ///< what the sensors' noise alone leaves of it, where that differs from the findings' floor; else 0
   double edge_Hz = 0;       ///< band that its parameters are from, where that is narrower than the takes'; else 0
   double width_s = 0;       ///< travel time over the width, where that is the effect
-  std::string statistic{};  ///< "stick-fluctuation" or "friction-residual"
+  double of_samples = 0;    ///< independent samples that it was told from, where these are not the findings'; else 0
+  std::string statistic{};  ///< begins with "stick-fluctuation" or "friction-residual"
   bool decided = true;      ///< the parameters are determined
   bool peculiar = false;    ///< imperfect models of a contact as declared do not look like it
   std::vector<contact_trace> before{}, after{};  ///< where that is not what the findings show of the models with and without it

@@ -7,7 +7,7 @@
 //
 //     H_ij = sinh(g x_<) sinh(g (T - x_>)) / (Z_T sinh(g T)),    T = t_a + t + t_b,  g = i w + |w| / (2 Q),
 //
-// x_< and x_> the travel times from the near end to the nearer and to the farther of i and j (dispersed where that is asked for); with viscous modes
+// x_< and x_> the travel times from the near end to the nearer and to the farther of i and j (dispersed, and under a stiffer string, where that is asked for); with viscous modes
 // (torsion_modes.hpp) the sum H_ij = (2 / (Z_T T)) sum_n sin(n pi x_i / T) sin(n pi x_j / T) i w / (w_n^2 - w^2 + i w w_n / Q),
 // and the compliance of the modes that are not summed.
 //
@@ -46,9 +46,9 @@ public:
     const double w = 2 * std::numbers::pi * frequency_Hz;
     if (w == 0) return {};
     if (!in_modes(damping_)) {
-      const double sooner = is_causal(damping_) ? std::pow(w * all_ / std::numbers::pi, -1 / (std::numbers::pi * q_)) : 1;
-      const complex g(0.5 * w / q_, w * sooner), scale = 1.0 / (impedance_ * std::sinh(g * all_)), a = std::sinh(g * a_),
-                                                 b = std::sinh(g * (all_ - b_));
+      const causal_loss loss(q_, is_causal(damping_) ? w * all_ / std::numbers::pi : 0);
+      const complex g = w * loss.sooner * complex(loss.per_phase, 1), scale = loss.softer / (impedance_ * std::sinh(g * all_)),
+                    a = std::sinh(g * a_), b = std::sinh(g * (all_ - b_));
       return {a * std::sinh(g * (all_ - a_)) * scale, b * std::sinh(g * b_) * scale, a * b * scale};
     }
     const complex turn(0, w);

@@ -8,10 +8,12 @@
 //
 // (Woodhouse, Schumacher & Garoff (2000), section IV). Written with decaying exponentials
 // only, (1 - e^{-2 g_1})(1 - e^{-2 g_2}) / (1 - e^{-2 (g_1 + g_2)}), it neither overflows nor cancels at high frequency. A loss of
-// this kind answers a little before it is asked; what cannot do so carries high frequencies faster (Kjartansson,
-// J. Geophys. Res. 84, 1979):
+// this kind answers a little before it is asked; what cannot do so carries high frequencies faster, and if it is in the stress, as in
+// what a string is made of, the string is the stiffer the faster it is turned (Kjartansson, J. Geophys. Res. 84, 1979):
 //
-//     tau_j (|w| / w_1)^(-1 / (pi Q))     in place of tau_j, w_1 the first torsional resonance, where the speed is told.
+//     g_j = i w tau_j (i |w| / w_1)^(-G),    Z_T (i |w| / w_1)^G in place of Z_T,    G = atan(1 / Q) / pi,
+//
+// w_1 the first torsional resonance, where speed and impedance are told. The product of both, the inertia, has no loss.
 //
 // It is one transfer function, applied to the whole record at once: Q is as low as 15, so that all memory ends within a few dozen of
 // the torsional periods, and zeros behind the record keep its end out of its beginning.
@@ -30,28 +32,38 @@
 
 namespace rosin {
 
+/// What a loss alike at all frequencies does to waves, at `over_first` times the frequency where they are told; 0: what is not causal.
+struct causal_loss {
+  double sooner = 1;                ///< share of the travel time
+  double per_phase = 0;             ///< loss a radian
+  std::complex<double> softer = 1;  ///< of the mobility
+
+  causal_loss(double q, double over_first) noexcept : per_phase{1 / (2 * q)} {
+    if (!(over_first > 0)) return;
+    const double angle = std::atan(1 / q);
+    sooner = std::pow(over_first, -angle / std::numbers::pi);
+    per_phase = std::tan(angle / 2), softer = std::polar(sooner, -angle / 2);
+  }
+};
+
 /// Torsion as seen from the contact; the impedance is referred to the surface.
 struct torsion_waveguide {
   std::array<double, 2> delay_s{};  ///< travel times to the near and the far end
   double impedance_Ns_m = 0;
   double q = 15;
-  bool causal = false;  ///< with the dispersion that belongs to the loss
+  bool causal = false;  ///< with the dispersion and the stiffness that belong to the loss
 
   /// Surface velocity for 1 N at a frequency in Hz, m/s per N.
   [[nodiscard]] std::complex<double> operator()(double frequency_Hz) const noexcept {
     const double w = 2 * std::numbers::pi * frequency_Hz;
     if (w == 0) return 0;
-    const double sooner = causal ? share_of_delay(std::abs(w)) : 1;
+    const causal_loss loss(q, causal ? std::abs(w) * (delay_s[0] + delay_s[1]) / std::numbers::pi : 0);
     const auto round_trip = [&](double delay) {
-      return std::exp(-2.0 * std::complex<double>(std::abs(w) * delay / (2 * q), w * delay * sooner));
+      return std::exp(-2 * delay * loss.sooner * std::complex<double>(std::abs(w) * loss.per_phase, w));
     };
-    const std::complex<double> a = round_trip(delay_s[0]), b = round_trip(delay_s[1]);
-    return (1.0 - a) * (1.0 - b) / (1.0 - a * b) / (2 * impedance_Ns_m);
-  }
-
-  /// Of the travel times at the first resonance, those at another angular frequency.
-  [[nodiscard]] double share_of_delay(double w) const noexcept {
-    return std::pow(w * (delay_s[0] + delay_s[1]) / std::numbers::pi, -1 / (std::numbers::pi * q));
+    const std::complex<double> a = round_trip(delay_s[0]), b = round_trip(delay_s[1]),
+                               softer = w > 0 ? loss.softer : std::conj(loss.softer);
+    return (1.0 - a) * (1.0 - b) / (1.0 - a * b) / (2 * impedance_Ns_m) * softer;
   }
 
   /// The same at 0, step_Hz, ... (count - 1) step_Hz: one product from a frequency to the next, where nothing disperses.
