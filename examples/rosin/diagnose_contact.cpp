@@ -274,8 +274,9 @@ void take_up_torsion(const asked_contact& ask, const rosin::torsion_values& decl
 
 }  // namespace
 
-bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks,
-                     double tension_drift, const std::vector<std::string>& without, rig_diagnosis& d) {
+bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
+                     const std::vector<diagnosed_stroke>& held, const rosin::pluck_diagnosis& plucks, double tension_drift,
+                     const std::vector<std::string>& without, rig_diagnosis& d) {
   rosin::contact_model model = declared_contact(rig);
   model.included.insert(model.included.end(), without.begin(), without.end());
   const asked_contact ask = [&](const rosin::contact_model& m) { return contact_of(rig, strokes, plucks, m); };
@@ -308,7 +309,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     model = rosin::include(std::move(model), best);
     found = ask(model);
     take_up_told();
-    declared.torsion = noted ? model.torsion : noted;
+    if (best.effect != "torsion") declared.torsion = model.torsion;
     if (best.width_s > 0) since = found;
     if (first == data_of(first)) add_after(traces_of(first, found), *d.contact);
     if (others == 0 && data_of(first) == d.metric && (first == d.metric || round > 0))
@@ -317,6 +318,12 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   }
   if (wide && !accounted()) d = *std::move(wide), found = since, sticking = false;  // it stands without what does not
   const bool named = d.missing.size() > others;
+  for (const diagnosed_stroke& s : held) d.held_out.push_back(s.name);
+  if (named && others == 0 && !held.empty()) {
+    const auto foretold = contact_of(rig, held, plucks, model);
+    d.before = left_in(d.metric, contact_of(rig, held, plucks, declared));
+    d.after = left_in(d.metric, foretold), d.noise_floor = floor_in(d.metric, foretold);
+  }
   const std::optional<open_contact> open = named ? std::nullopt : left_open(strokes, found, d);
   if (open && others == 0) judge_by(*open, d);
   if (open && others > 0) d.left_in_strokes = open;

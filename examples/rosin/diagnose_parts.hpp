@@ -30,6 +30,7 @@ struct diagnosed_stroke {
   double force_sd_N = 0, velocity_sd_m_s = 0, delta = 0;  ///< in the middle of the take; Eq. (12)
   double level_sd_N = 0;                                  ///< of the mean force, where it was lost and is estimated
   std::optional<double> own_place{};                      ///< if that is not where the plucks were
+  bool hold_out = false;                                  ///< never fitted, only predicted
 };
 
 /// The plucks to fit and to keep aside, what is known before, and what the declared model already holds.
@@ -97,8 +98,10 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
 
 /// One effect of the contact after the other, under strokes whose tension is the plucks' times 1 + tension_drift; true if the
 /// contact is as the model then has it. Where one was found in what sticks, that has to move by at most half of what it did, or
-/// by no more than the reconstruction leaves unsure; else none is named.
-bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks,
-                     double tension_drift, const std::vector<std::string>& without, rig_diagnosis& d);
+/// by no more than the reconstruction leaves unsure; else none is named. `held`: strokes that are only predicted: what was found in
+/// the others is judged by them.
+bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
+                     const std::vector<diagnosed_stroke>& held, const rosin::pluck_diagnosis& plucks, double tension_drift,
+                     const std::vector<std::string>& without, rig_diagnosis& d);
 
 }  // namespace tool

@@ -175,6 +175,14 @@ bool stretched_by_motion(const rosin::tension_drift& t, const rosin::pluck_diagn
   return t.relative < 2 * most;
 }
 
+/// Strokes that are only predicted, taken out of those to fit.
+std::vector<diagnosed_stroke> set_aside(std::vector<diagnosed_stroke>& strokes) {
+  std::vector<diagnosed_stroke> fitted, held;
+  for (auto& s : strokes) (s.hold_out ? held : fitted).push_back(std::move(s));
+  strokes = std::move(fitted);
+  return held;
+}
+
 /// A contact of some width hides a drift, and a drift the width: both at once, where that leaves nothing open. `d`: before the
 /// contact was examined.
 std::optional<rig_diagnosis> wide_and_drifted(const rosin::rig& rig, const rosin::rig_values& values,
@@ -186,8 +194,9 @@ std::optional<rig_diagnosis> wide_and_drifted(const rosin::rig& rig, const rosin
   std::vector<std::string> said;  // once already
   auto again = reconstruct_strokes(rig, values, p, both->relative, from, said);
   add_lost_levels(rig, p, again);
+  const auto held = set_aside(again);
   const std::size_t others = d.missing.size();
-  if (!examine_contact(rig, again, p, both->relative, without, d)) return {};
+  if (!examine_contact(rig, again, held, p, both->relative, without, d)) return {};
   const auto contact = d.missing.begin() + static_cast<std::ptrdiff_t>(others);
   if (std::none_of(contact, d.missing.end(), [](const auto& m) { return m.effect == "finite-contact-width"; })) return {};
   d.missing.insert(contact, drift_by(both->relative, std::hypot(both->sd, wide_drift_fault)));
@@ -257,6 +266,8 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   else if (std::any_of(rig.takes.begin(), rig.takes.end(), [](const auto& t) { return t.kind == rosin::take_kind::bow; }))
     d.assumed.emplace_back("the strokes were not examined: the contact cannot be seen past what the plucks leave unexplained");
   step();
+  std::vector<diagnosed_stroke> held = set_aside(strokes);
+  if (strokes.empty() && !held.empty()) d.assumed.emplace_back("the strokes were not examined: all of them are marked hold_out");
   if (!strokes.empty()) {
     const rosin::tension_drift drift = drift_of(strokes, p);
     const double rise = drifted(drift) && knows("tension-drift") ? drift.relative : 0;
@@ -266,16 +277,18 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
                             " % off the plucks': their motion stretches the string");
       else add_drift(drift, strokes, plain_string, d);
       strokes = reconstruct_strokes(rig, values, p, rise, from, d.warnings);
+      held = set_aside(strokes);
     }
     step();
     add_lost_levels(rig, p, strokes);
+    add_lost_levels(rig, p, held);
     for (const auto& s : strokes)
       if (s.own_place)
         d.assumed.push_back(s.name + ": bowed at " + in_digits(*s.own_place, "%.4f") +
                             " of the length, where its two versions part least, not where the plucks were");
     for (const auto& line : approaches_of(rig, strokes, p)) d.assumed.push_back(line);
     const rig_diagnosis before = d;
-    contact_open = !examine_contact(rig, strokes, p, rise, without, d);
+    contact_open = !examine_contact(rig, strokes, held, p, rise, without, d);
     if (contact_open && rise == 0 && knows("tension-drift") && knows("finite-contact-width"))
       if (auto both = wide_and_drifted(rig, values, strokes, p, without, from, before))
         d = *std::move(both), contact_open = false;

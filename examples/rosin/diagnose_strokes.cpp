@@ -42,7 +42,7 @@ rosin::bow_motion<double> motion_of(const diagnosed_stroke& s, const rosin::pluc
 diagnosed_stroke recorded_stroke(const rosin::take& take, const rosin::take_signals& read, const rosin::calibration& calibration,
                                  const rosin::pluck_diagnosis& plucks, const rosin::band& limits) {
   diagnosed_stroke s;
-  s.name = take.name, s.rate_Hz = read.sample_rate_Hz;
+  s.name = take.name, s.rate_Hz = read.sample_rate_Hz, s.hold_out = take.hold_out;
   s.speed_m_s = take.speed_m_s.value_or(0), s.normal_force_N = take.normal_force_N.value_or(0);
   s.calibration = calibration;
   s.recorded_N = {read.near_N(), read.far_N()};

@@ -174,6 +174,11 @@ variant() { mkdir -p "$1" && cp late/*.wav "$1" && perl -0pe "$2" late/rig.toml 
 variant held 's/(force_N = \S+\n)(hold_out = true\n)?/$1hold_out = true\n/g'
 expect 2 diagnose held
 says "every pluck is marked hold_out: none is left to fit"
+# Of two plucks both are fitted, but for one that is marked.
+variant two 's/\n\[\[take\]\]\nname = "pluck-3".*?(?=\n\[\[take\]\]|\z)//s; s/(name = "pluck-1")/$1\nhold_out = true/'
+expect 0 diagnose two $(without $elsewhere) --json two.json
+is_silent_about "two plucks only"
+holds two.json "$explained" '$m->{effect} eq "channel-skew"' '"@{$d->{fit}{held_out}}" eq "pluck-1"'
 variant none 's/\n\[\[take\]\].*//s; s/$/\n[[take]]\nname = "quiet"\nkind = "quiet"\nfile = "pluck-3.wav"\n/'
 expect 2 diagnose none
 says "no pluck to compare with"
