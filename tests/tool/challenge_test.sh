@@ -107,7 +107,14 @@ expect 0 reconstruct pair/rigs/* --take bow-1 --model pair.json --out pair-bow-1
 says "sensor noise"
 is_silent_about "sensor noise 0,"
 is_silent_about "another rig file"
-echo "# another day" >>"$(echo pair/rigs/*/rig.toml)"
+# A pluck that the rig file marks as held out is not fitted for all that.
+perl -0pi -e 's/(name = "pluck-2")/$1\nhold_out = true/' pair/rigs/*/rig.toml
+expect 0 diagnose pair/rigs/* $few $no_contact --json one-held.json
+is_silent_about "noise is slow"
+perl -MJSON::PP -e '
+  local $/;
+  my $said = decode_json(<STDIN>);
+  die unless $said->{verdict} eq "unexplained" && "@{ $said->{fit}{held_out} }" eq "pluck-2";' <one-held.json
 expect 0 reconstruct pair/rigs/* --take bow-1 --model pair.json --out pair-bow-1.csv --force
 says "was made of another rig file"
 

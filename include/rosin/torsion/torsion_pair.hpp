@@ -7,8 +7,8 @@
 //
 //     H_ij = sinh(g x_<) sinh(g (T - x_>)) / (Z_T sinh(g T)),    T = t_a + t + t_b,  g = i w + |w| / (2 Q),
 //
-// x_< and x_> the travel times from the near end to the nearer and to the farther of i and j (dispersed, and under a stiffer string, where that is asked for); with viscous modes
-// (torsion_modes.hpp) the sum H_ij = (2 / (Z_T T)) sum_n sin(n pi x_i / T) sin(n pi x_j / T) i w / (w_n^2 - w^2 + i w w_n / Q),
+// x_< and x_> the travel times from the near end to the nearer and to the farther of i and j (dispersed, and with the impedance that
+// goes with it, where that is asked for); with viscous modes (torsion_modes.hpp) the sum H_ij = (2 / (Z_T T)) sum_n sin(n pi x_i / T) sin(n pi x_j / T) i w / (w_n^2 - w^2 + i w w_n / Q),
 // and the compliance of the modes that are not summed.
 //
 #pragma once

@@ -11,7 +11,7 @@
 // this kind answers a little before it is asked; what cannot do so carries high frequencies faster, and if it is in the stress, as in
 // what a string is made of, the string is the stiffer the faster it is turned (Kjartansson, J. Geophys. Res. 84, 1979):
 //
-//     g_j = i w tau_j (i |w| / w_1)^(-G),    Z_T (i |w| / w_1)^G in place of Z_T,    G = atan(1 / Q) / pi,
+//     g_j = i w tau_j (i w / w_1)^(-G) / cos(pi G / 2),    Z_T (i w / w_1)^G in place of Z_T,    G = atan(1 / Q) / pi,
 //
 // w_1 the first torsional resonance, where speed and impedance are told. The product of both, the inertia, has no loss.
 //
