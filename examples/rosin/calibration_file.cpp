@@ -50,7 +50,9 @@ json string_json(const rig_calibration& c) {
            {"impedance_Ns_m", or_null(c.impedance_Ns_m)},
            {"inverse_quality", with_sd(v[layout::inverse_quality], sd[layout::inverse_quality])},
            {"loss_internal_s", with_sd(v[layout::internal_loss], sd[layout::internal_loss])},
-           {"loss_air_sqrt_Hz", with_sd(v[layout::air_loss], sd[layout::air_loss])}};
+           {"loss_air_sqrt_Hz", with_sd(v[layout::air_loss], sd[layout::air_loss])},
+           {"loss_causality", with_sd(v[layout::causality], sd[layout::causality])},
+           {"loss_drag_Hz", with_sd(v[layout::loss_drag], sd[layout::loss_drag])}};
   return out;
 }
 
@@ -227,6 +229,10 @@ rosin::outcome<calibration_set> read_calibration(const std::string& path) {
     rosin::calibration common;
     common.at.loss = {1 / string.at("inverse_quality").at("value").get<double>(), string.at("loss_internal_s").at("value"),
                       string.at("loss_air_sqrt_Hz").at("value")};
+    for (const auto& [key, to] :
+         {std::pair{"loss_causality", &rosin::loss_law::causality}, {"loss_drag_Hz", &rosin::loss_law::drag_Hz}})
+      if (string.contains(key)) common.at.loss.*to = string.at(key).at("value");
+    common.at.loss.reference_Hz = out.fundamental_Hz;
     common.at.impedance_Ns_m = string.at("impedance_Ns_m").is_null() ? std::numeric_limits<double>::quiet_NaN()
                                                                      : string.at("impedance_Ns_m").at("value").get<double>();
     common.scale_relative_sd = document.at("common_scale_relative_sd");

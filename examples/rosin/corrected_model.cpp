@@ -91,7 +91,9 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
     for (const auto& e : effects) count += static_cast<Eigen::Index>(e.parameters.size());
     Eigen::VectorXd value = Eigen::VectorXd::Zero(count), sd = value;
     for (Eigen::Index p = 0; p < layout.size(); ++p) {
-      const auto [v, s] = value_of(calibration, layout.name(p));
+      auto [v, s] = value_of(calibration, layout.name(p));
+      const bool optional = p >= rosin::pluck_layout::causality && p <= rosin::pluck_layout::loss_drag;
+      if (optional && !std::isfinite(v)) v = s = 0;  // older models have none
       if (!std::isfinite(v))
         return wrong("calibration has no \"" + layout.name(p) + "\": it was made of other takes or terminations than " +
                      rig.file + " names");

@@ -187,7 +187,7 @@ rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_strok
   t.sides = rosin::sides_of(rosin::scene_of(plucks.data, plucks.best), s.calibration.at.delay_s);
   t.rate_Hz = s.rate_Hz, t.rod_speed_m_s = s.speed_m_s, t.normal_force_N = s.normal_force_N;
   t.delay_s = s.calibration.at.delay_s, t.stiffness_s2 = s.calibration.at.stiffness_s2;
-  t.inverse_q = s.calibration.at.loss.inverse_q(0.5 / (t.delay_s[0] + t.delay_s[1]));
+  t.loss = s.calibration.at.loss;
   t.impedance_Ns_m = s.calibration.at.impedance_Ns_m, t.length_m = rig.string.length_m.value_or(0);
   t.noise_N = noise_of(s.calibration);
   t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.level_sd_N = s.level_sd_N, t.edge_Hz = 0.45 * s.rate_Hz;

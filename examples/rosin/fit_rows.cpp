@@ -44,6 +44,7 @@ void string_rows(table_of_rows& t, const rig_calibration& c) {
   const double q = 1 / c.fit.value[layout::inverse_quality];
   t.add("Q at low frequency", {q, q * q * c.fit.sd[layout::inverse_quality], 0}, "");
   t.add("loss growing with frequency (1/Q per Hz)", one(layout::internal_loss), "ns", 1e9);
+  if (c.fit.layout.is_free(layout::causality)) t.add("dispersion by loss (1: as causality asks)", one(layout::causality), "");
 }
 
 void position_rows(table_of_rows& t, const rig_calibration& c) {

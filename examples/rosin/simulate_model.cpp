@@ -158,6 +158,9 @@ void put_string(const diagnosed_model& model, simulation_plan& plan) {
   if (const auto d = value_of(model, "inverse_quality")) s.loss.quality = 1 / *d;
   s.loss.internal_s = value_of(model, "loss_internal_s").value_or(s.loss.internal_s);
   s.loss.air_sqrt_Hz = value_of(model, "loss_air_sqrt_Hz").value_or(s.loss.air_sqrt_Hz);
+  s.loss.causality = value_of(model, "loss_causality").value_or(0);
+  s.loss.drag_Hz = value_of(model, "loss_drag_Hz").value_or(0);
+  s.loss.reference_Hz = s.fundamental_Hz;
   if (value_of(model, "convention").value_or(-1) > 0) plan.rig.damping = rosin::damping_convention::kelvin_voigt;
 }
 

@@ -161,7 +161,8 @@ struct held_string {
 /// Everything at one frequency that the rows of a take share.
 struct end_bin {
   std::complex<double> s, slope_stiffness;
-  double slope_quality;
+  std::array<std::complex<double>, 5> slope_loss;  ///< by 1/quality, internal_s, air_sqrt_Hz, causality, drag_Hz
+  std::array<double, 5> slope_inverse_q;           ///< of 1/Q, by the same
   moving_response a;
   passage_at passage;
   double frequency_Hz, stiffness_s2;
@@ -174,10 +175,24 @@ inline end_bin bin_of(const end_model& m, const std::vector<admittance_mode>& mo
   const double epsilon = string.stiffness_s2(), step = std::max(1e-3 * std::abs(epsilon), 1e-16),
                f = std::abs(s.imag()) / (2 * std::numbers::pi);
   const passage_at now(s, epsilon, string.loss), stiffer(s, epsilon + step, string.loss);
-  const double p = v[m.layout.position(take)], one_way = 0.5 / v[layout::fundamental];
+  const double p = v[m.layout.position(take)], one_way = 0.5 / v[layout::fundamental],
+               slow = slowness_ratio(2 * std::numbers::pi * f, epsilon);
+  constexpr std::array small{1e-6, 1e-10, 1e-4, 1e-3, 1e-3};
+  std::array<std::complex<double>, 5> by_loss;
+  std::array<double, 5> lost;
+  for (std::size_t i = 0; i < by_loss.size(); ++i) {
+    const loss_law& was = string.loss;
+    std::array more{1 / was.quality, was.internal_s, was.air_sqrt_Hz, was.causality, was.drag_Hz};
+    more[i] += small[i];
+    const loss_law changed{1 / more[0], more[1], more[2], more[3], more[4], was.reference_Hz};
+    lost[i] = (changed.inverse_q(f) - was.inverse_q(f)) / small[i];
+    by_loss[i] =
+        slow * std::complex<double>(std::numbers::pi * f * lost[i], s.imag() * (changed.lead(f) - was.lead(f)) / small[i]);
+  }
   return {s,
           (stiffer.gamma_per_s - now.gamma_per_s) / step,
-          std::numbers::pi * f * slowness_ratio(2 * std::numbers::pi * f, epsilon),
+          by_loss,
+          lost,
           moving_string(now, {p * one_way * now.gamma_per_s, (1 - p) * one_way * now.gamma_per_s}, m.admittance(modes, s)),
           now,
           f,
@@ -221,9 +236,14 @@ inline end_problem::rows end_problem::at(const end_model& m, const Eigen::Vector
                   by_stiffness = by_gamma * b.slope_stiffness;
     put(layout::fundamental, -by_gamma * b.passage.gamma_per_s / f0 - 2 * b.stiffness_s2 / f0 * by_stiffness);
     put(layout::inharmonicity, by_stiffness * std::pow(2 * std::numbers::pi * f0, -2));
-    put(layout::inverse_quality, by_gamma * b.slope_quality);
-    put(layout::internal_loss, by_gamma * b.slope_quality * b.frequency_Hz);
-    put(layout::air_loss, by_gamma * b.slope_quality / std::sqrt(b.frequency_Hz));
+    for (const auto& [of, k] : {std::pair{layout::inverse_quality, 0U},
+                                {layout::internal_loss, 1U},
+                                {layout::air_loss, 2U},
+                                {layout::causality, 3U},
+
+                                {layout::loss_drag, 4U}})
+      put(of,
+          by_gamma * b.slope_loss[k] - gone * (1 + v[layout::convention]) * (A - still) * complex(0, 0.5 * b.slope_inverse_q[k]));
     put(layout::convention, -gone * turned * (A - still));
     put(layout::gain_near + static_cast<Eigen::Index>(c), signal);
     put(L.position(take), by_A * one_way * b.passage.gamma_per_s * (b.a.by_phase[c][0] - b.a.by_phase[c][1]) + turn * by_still);

@@ -30,7 +30,9 @@ struct passage_at {
   passage_at(std::complex<double> s, double stiffness_s2, const loss_law& loss) {
     const std::complex<double> w(s.imag(), -s.real()), q = phase_rate(w, stiffness_s2), K = stiffness_s2 * q * q;
     const double f = std::abs(s.imag()) / (2 * std::numbers::pi), real_w = 2 * std::numbers::pi * f;
-    gamma_per_s = std::complex<double>(0, 1) * q + real_w * loss.inverse_q(f) / 2 * slowness_ratio(real_w, stiffness_s2);
+    gamma_per_s =
+        std::complex<double>(0, 1) * q +
+        slowness_ratio(real_w, stiffness_s2) * std::complex<double>(real_w * loss.inverse_q(f) / 2, s.imag() * loss.lead(f));
     const std::complex<double> softer = plain::reciprocal(1.0 + K);
     force_factor = (1.0 + 2.0 * K) * softer;
     const std::complex<double> ratio = plain::sqrt(1.0 + K) * plain::reciprocal(force_factor);

@@ -11,6 +11,9 @@
 // Gains and strengths only enter as products; nominal values with their tolerances decide between them (priors), and
 // what that leaves open is one common scale, reported apart.
 //
+// How much the loss disperses (loss_law) is a matter of convention where modes are damped one by one, and of physics in a string. It
+// is sought where the model leaves more than noise, and kept where it accounts for most of that.
+//
 #pragma once
 
 #include <rosin/calibrate/pluck_problem.hpp>
@@ -28,6 +31,7 @@ struct pluck_fit_result {
   Eigen::MatrixXd covariance;
   std::array<double, 2> noise_N{};        ///< white noise per channel, rms over the whole band to half the sampling rate
   double misfit = 1;                      ///< power at the partials against what noise explains; 1: the model is complete
+  bool more_than_noise = false;           ///< the misfit is no chance
   std::vector<double> residual_ratio;     ///< per take: rms(recorded - model) / rms(recorded), inside the band
   std::vector<std::string> unidentified;  ///< parameters that these plucks cannot tell
   band limits{0, 0};
@@ -119,13 +123,47 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
   }
   const assessment found = problem.assess(result.value);
   result.noise_N = found.noise;
-  result.misfit = found.misfit;
+  result.misfit = found.misfit, result.more_than_noise = found.inflation() != 1;
   result.residual_ratio = found.residual_ratio;
   const normal_equations end = problem.linearise(result.value);
   const Eigen::MatrixXd inverse = invert_free(result.layout, end.hessian);
   result.covariance = inverse * (end.prior + found.inflation() * problem.scatter(result.value)) * inverse;
   result.sd = result.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   result.unidentified = unidentified(end.hessian - end.prior, result.layout);
+}
+
+/// All stages from a starting point on.
+inline void approach_and_finish(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
+                                pluck_fit_result& result) {
+  const Eigen::VectorXd begin = result.value;
+  for (const stage& s : approach) {
+    const pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, s.partials, s.periods,
+                                false, {1e-2, 1e-2});
+    descend(problem, result.layout, begin, result.value, 12, 1e-2, result.iterations);
+  }
+  const Eigen::VectorXd near = result.value;
+  for (const double periods : horizon_periods) {
+    result.value = near;
+    finish(takes, guess, options, begin, periods, result);
+    result.horizon_periods = periods;
+    if (worst(result) < 0.1) break;
+  }
+}
+
+/// What a fit with causal loss and more of the record, or as much and a third of the excess, is taken for.
+inline bool is_causal(double causality) { return causality > 0.2 && causality < 1.5; }
+
+/// The same fit with loss that may disperse, where that is what was missing.
+inline void try_causality(const std::vector<pluck_take>& takes, const pluck_guess& guess, pluck_options options,
+                          const Eigen::VectorXd& begin, pluck_fit_result& result) {
+  if (options.causality || !result.more_than_noise) return;
+  options.causality = true;
+  pluck_fit_result other;
+  other.layout = pluck_layout(takes, options), other.limits = result.limits, other.value = begin;
+  approach_and_finish(takes, guess, options, other);
+  const bool fits = other.horizon_periods > result.horizon_periods ||
+                    (other.horizon_periods == result.horizon_periods && other.misfit - 1 < (result.misfit - 1) / 3);
+  if (fits && is_causal(other.value[pluck_layout::causality])) result = std::move(other);
 }
 
 }  // namespace detail
@@ -142,18 +180,8 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
   result.value = result.layout.initial(takes, guess, start->fundamental_Hz, start->release_s, start->position);
 
   const Eigen::VectorXd begin = result.value;
-  for (const detail::stage& s : detail::approach) {
-    const pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, s.partials, s.periods,
-                                false, {1e-2, 1e-2});
-    detail::descend(problem, result.layout, begin, result.value, 12, 1e-2, result.iterations);
-  }
-  const Eigen::VectorXd near = result.value;
-  for (const double periods : detail::horizon_periods) {
-    result.value = near;
-    detail::finish(takes, guess, options, begin, periods, result);
-    result.horizon_periods = periods;
-    if (detail::worst(result) < 0.1) break;
-  }
+  detail::approach_and_finish(takes, guess, options, result);
+  detail::try_causality(takes, guess, options, begin, result);
   const double worst = detail::worst(result);
   if (worst > most_residual)
     return failure{takes.front().name + ": the plucks do not ring as the declared string should (residual " +

@@ -3,7 +3,7 @@
 //
 // What a fit of plucks is given, which quantities it seeks, and in which order they stand:
 //
-//     f0, b, 1/Q, internal loss, air loss, psi, ln gain near, ln gain far,     shared by all takes
+//     f0, b, 1/Q, internal loss, air loss, psi, ln gain near, ln gain far, causality and drag of the loss,     shared by all takes
 //     one position for each declared position,
 //     per take: instant of release, ln strength, offset near, offset far,
 //     where terminations are known to move, of each mode: ln of frequency, q and Z / M over what is declared.
@@ -54,6 +54,7 @@ struct pluck_options {
   bool internal_loss = true;  ///< 1/Q may grow with frequency
   bool air_loss = false;
   bool convention = true;       ///< psi is fitted
+  bool causality = false;       ///< how much the loss disperses is fitted, with a little of 1/Q as f and 1/f
   double pass_fraction = 0.34;  ///< edges of the band, of the sampling rate: below where converters begin to cut off
   double stop_fraction = 0.42;
   int most_partials = 160;  ///< a longer, lower string is fitted over fewer hertz
@@ -80,6 +81,8 @@ public:
     convention,
     gain_near,
     gain_far,
+    causality,
+    loss_drag,
     first_position
   };
   enum per_take { release, strength, offset_near, offset_far, take_size };
@@ -112,8 +115,9 @@ public:
   }
 
   [[nodiscard]] bool is_free(Eigen::Index p) const {
-    return (p != inharmonicity || options_.stiffness) && (p != internal_loss || options_.internal_loss) &&
-           (p != air_loss || options_.air_loss) && (p != convention || options_.convention);
+    return (p != inharmonicity || options_.stiffness) && (p != internal_loss || options_.internal_loss || options_.causality) &&
+           (p != air_loss || options_.air_loss) && (p != convention || options_.convention) &&
+           ((p != causality && p != loss_drag) || options_.causality);
   }
   /// Gains and strengths: only their products show.
   [[nodiscard]] bool is_scale(Eigen::Index p) const {
@@ -121,8 +125,8 @@ public:
   }
 
   [[nodiscard]] std::string name(Eigen::Index p) const {
-    static constexpr std::array names{"fundamental_Hz",   "inharmonicity", "inverse_quality", "loss_internal_s",
-                                      "loss_air_sqrt_Hz", "convention",    "ln_gain_near",    "ln_gain_far"};
+    static constexpr std::array names{"fundamental_Hz", "inharmonicity", "inverse_quality", "loss_internal_s", "loss_air_sqrt_Hz",
+                                      "convention",     "ln_gain_near",  "ln_gain_far",     "loss_causality",  "loss_drag_Hz"};
     static constexpr std::array mine{"release_s", "ln_strength", "offset_near_N", "offset_far_N"};
     if (p < first_position) return names[static_cast<std::size_t>(p)];
     if (p < at(0, 0)) return positions_.size() == 1 ? "position" : "position " + std::to_string(p - first_position + 1);
@@ -156,7 +160,10 @@ public:
   }
 
   [[nodiscard]] ringing_string string(const Eigen::VectorXd& v) const {
-    return {v[fundamental], v[inharmonicity], {1 / v[inverse_quality], v[internal_loss], v[air_loss]}, v[convention]};
+    return {v[fundamental],
+            v[inharmonicity],
+            {1 / v[inverse_quality], v[internal_loss], v[air_loss], v[causality], v[loss_drag], v[fundamental]},
+            v[convention]};
   }
 
   /// The terminations: what is declared, and how far it is off.
@@ -173,7 +180,7 @@ public:
 
   /// Steps for numerical derivatives of poles and residues: small against what each parameter can be known to.
   [[nodiscard]] double step(Eigen::Index p, const Eigen::VectorXd& v) const {
-    static constexpr std::array common{0.0, 1e-9, 1e-8, 1e-12, 1e-6, 1e-4, 1e-6, 1e-6};
+    static constexpr std::array common{0.0, 1e-9, 1e-8, 1e-12, 1e-6, 1e-4, 1e-6, 1e-6, 1e-5, 1e-5};
     static constexpr std::array mine{1e-9, 1e-6, 1e-6, 1e-6};
     if (p == fundamental) return 1e-7 * v[p];
     if (p < first_position) return common[static_cast<std::size_t>(p)];
@@ -187,7 +194,11 @@ public:
   };
   [[nodiscard]] knowledge prior(Eigen::Index p, const std::vector<pluck_take>& takes, const pluck_guess& guess) const {
     if (p == gain_near || p == gain_far) return {0, guess.gain_tolerance[static_cast<std::size_t>(p - gain_near)] / 2};
-    if (p == convention) return {0, 1.5};  // conventions lie between -1 and 1
+    if (p == convention) return {0, 1.5};                                        // conventions lie between -1 and 1
+    if (p == causality) return {0.5, 0.5};                                       // between 0 and 1
+    if (p == loss_drag) return {0, 0.1 * guess.fundamental_Hz / guess.quality};  // a tenth of the loss at the first partial,
+    if (p == internal_loss && options_.causality && !options_.internal_loss)     // and at the thirtieth: no law is exact
+      return {0, 0.1 / (guess.quality * 30 * guess.fundamental_Hz)};
     if (p == inharmonicity && options_.stiffness && guess.inharmonicity > 0)
       return {guess.inharmonicity, 0.3 * guess.inharmonicity};  // for what does not tell it yet: short looks, few partials
     if (p >= first_of_ends()) return {0, end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3] / 2};
@@ -215,7 +226,8 @@ public:
   /// Whether a string could be like this, and near enough to where the fit began.
   [[nodiscard]] bool plausible(const Eigen::VectorXd& v, const Eigen::VectorXd& start, double highest_Hz) const {
     bool ok = v.allFinite() && std::abs(v[fundamental] / start[fundamental] - 1) < 0.08 && v[inverse_quality] > 1e-7 &&
-              v[inverse_quality] < 0.2 && v[inharmonicity] > -1e-5 && v[inharmonicity] < 0.01 && std::abs(v[convention]) < 300;
+              v[inverse_quality] < 0.2 && v[inharmonicity] > -1e-5 && v[inharmonicity] < 0.01 && std::abs(v[convention]) < 300 &&
+              std::abs(v[causality]) < 10;
     for (const double f : {v[fundamental], 30 * v[fundamental], highest_Hz}) ok = ok && string(v).loss.inverse_q(f) > 0;
     for (std::size_t t = 0; t < group_.size(); ++t)
       ok = ok && v[position(t)] > 0.002 && v[position(t)] < 0.998 && std::abs(v[position(t)] - start[position(t)]) < 0.06 &&

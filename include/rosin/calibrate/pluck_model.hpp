@@ -17,6 +17,9 @@
 // ends from it), +1 where the loss is in the elastic stress (and is felt by the ends). It is a nuisance of order 1/Q and is
 // fitted.
 //
+// Where loss is causal (loss_law) the partials are dispersed, and ring 1 / (1 - d ln c / d ln w) stronger against what the wire held:
+// the residue's slope is that of the wavenumber, and held was the string as it is at rest.
+//
 // A band-limited recording sees partial n with the weight W(s_n / (2 pi i)): what a filter does to a line that decays is its
 // response at a complex frequency, which on the band's flank is a turn in phase. Around t0 itself nothing has arrived at the ends
 // yet.
@@ -41,9 +44,13 @@ struct ringing_string {
   loss_law loss{};
   double convention = -1;  ///< psi
 
-  /// Frequency of partial n >= 1, without damping.
+  /// Frequency of partial n >= 1, without damping but with what that disperses.
   [[nodiscard]] double partial_Hz(int n) const noexcept {
-    return n * fundamental_Hz * std::sqrt(std::max(0.0, 1 + inharmonicity * n * n));
+    return dispersed(n * fundamental_Hz * std::sqrt(std::max(0.0, 1 + inharmonicity * n * n)));
+  }
+  /// Where causal loss takes a partial: f = lossless f c(f) / c_ref, in two steps.
+  [[nodiscard]] double dispersed(double lossless_Hz) const noexcept {
+    return lossless_Hz * std::exp(loss.quickening(lossless_Hz * std::exp(loss.quickening(lossless_Hz))));
   }
   /// epsilon = B m / T^2, s^2: b / (2 pi f0)^2.
   [[nodiscard]] double stiffness_s2() const noexcept {
@@ -78,8 +85,9 @@ struct ringing_string {
     const double half = string.loss.inverse_q(f) / 2, w = 2 * std::numbers::pi * f;
     const std::complex<double> pole{-w * half, w * std::sqrt(std::max(0.0, 1 - half * half))};
     const double angle = n * std::numbers::pi;
-    const std::complex<double> near = band_weight(limits, pole) * 2.0 / angle * std::sin(angle * position) *
-                                      std::complex<double>(1, string.convention * half) * std::exp(pole * age_s);
+    const std::complex<double> near = band_weight(limits, pole) * 2.0 / angle * std::sin(angle * position) /
+                                      (1 - string.loss.dispersion(f)) * std::complex<double>(1, string.convention * half) *
+                                      std::exp(pole * age_s);
     lines.push_back({pole, {near, n % 2 ? near : -near}});
   }
   return lines;

@@ -32,7 +32,8 @@ struct contact_take {
   double rod_speed_m_s = 0, normal_force_N = 0;  ///< declared; steady
   std::array<double, 2> delay_s{};               ///< transverse travel times to the ends
   std::array<string_side, 2> sides{};            ///< what the string carries and ends on, for the same
-  double stiffness_s2 = 0, inverse_q = 0;        ///< of the transverse waves, for a contact of some width
+  double stiffness_s2 = 0;                       ///< of the transverse waves, for a contact of some width
+  loss_law loss{.quality = 1e300};               ///< likewise
   double impedance_Ns_m = 0, length_m = 0;       ///< length 0: unknown
   double force_sd_N = 0, velocity_sd_m_s = 0;    ///< random, of one sample
   std::array<double, 2> noise_N{};               ///< of one sample of near_N, far_N

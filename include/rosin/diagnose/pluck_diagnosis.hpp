@@ -32,13 +32,25 @@ namespace detail {
 /// Effects that the declared model, as it was fitted, does not contain.
 using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_result&)>;
 
+/// Whether loss that disperses accounts for most of what these effects leave (pluck_fit.hpp).
+[[nodiscard]] inline bool leaves_causal_loss(const scene_data& data, const scene_fit& found, std::array<double, 2> noise) {
+  if (data.options.causality || found.quality.inflation() == 1) return false;
+  scene_data freed = data;
+  freed.options.causality = true;
+  freed.layout = pluck_layout(data.takes, freed.options, data.guess.ends);
+  const scene_fit tried =
+      fit_scene(freed, found.effects, found.value, {{1000, found.horizon_periods, true, freed.compared()}}, noise);
+  return is_causal(tried.value[pluck_layout::causality]) && tried.quality.inflation() - 1 < (found.quality.inflation() - 1) / 3;
+}
+
 /// Of recordings as they are.
 [[nodiscard]] inline outcome<pluck_diagnosis> diagnose_as_recorded(const std::vector<pluck_take>& takes,
                                                                    const std::vector<pluck_take>& held, const pluck_guess& guess,
-                                                                   const pluck_options& options, const effects_for& catalogue_for,
+                                                                   pluck_options options, const effects_for& catalogue_for,
                                                                    int most_effects, double least_temper = 1) {
   auto declared = fit_declared(takes, guess, options);
   if (!declared) return failure{declared.error()};
+  options.causality = declared->layout.is_free(pluck_layout::causality);
   const pluck_layout layout(takes, options, guess.ends);
   pluck_diagnosis d{{takes, guess, options, layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
   d.data.least_temper = least_temper;
@@ -54,7 +66,12 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   const double noise = modulated ? rms_of(still.rms_N) : least_noise;
   d.mismatch = locate(d.data, d.base, noise);
   const auto& judged = held.empty() ? takes : held;
+  const scene_fit found = d.best;
   judge(d, judged, noise, still.samples > 0, modulated);
+  if (leaves_causal_loss(d.data, found, {noise, noise})) {
+    options.causality = true;
+    return diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects, least_temper);
+  }
   if (d.mismatched) judge_ranking(d, judged, noise);
   if (!d.explained) d.mismatch.place = place_of_residual(d.data, d.best, d.mismatch.take);
   return d;

@@ -122,7 +122,8 @@ private:
       return Eigen::ArrayXd(n.square() * (1 + string.inharmonicity * n.square()));  // of frequencies, in fundamentals
     };
     const Eigen::ArrayXd n = numbers(count), w2 = squares(n);
-    out.frequency_Hz = string.fundamental_Hz * w2.sqrt(), out.stiffened = n.square();
+    const auto dispersed = [&](double f) { return string.dispersed(f); };
+    out.frequency_Hz = (string.fundamental_Hz * w2.sqrt()).unaryExpr(dispersed), out.stiffened = n.square();
     out.shapes = Eigen::MatrixXd::Identity(count, count);
     if (masses.empty()) return out;
     const auto heavy = static_cast<Eigen::Index>(masses.size());
@@ -141,7 +142,7 @@ private:
       at_rest.row(count + m) = shape(n).matrix().transpose();
     }
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness, inertia);
-    const Eigen::ArrayXd f = string.fundamental_Hz * modes.eigenvalues().cwiseMax(0).cwiseSqrt().array();
+    const Eigen::ArrayXd f = (string.fundamental_Hz * modes.eigenvalues().cwiseMax(0).cwiseSqrt().array()).unaryExpr(dispersed);
     const Eigen::Index kept = (f < stop_Hz).count();
     out.frequency_Hz = f.head(kept), out.shapes = modes.eigenvectors().topLeftCorner(count, kept);
     out.stiffened = (out.shapes.array().square().colwise() * n.square()).colwise().sum().transpose();

@@ -102,7 +102,7 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
     if (std::abs(next - q) < 1e-12 * q) break;
     q = next;
   }
-  return q * std::sqrt(1 + epsilon * q * q) / (2 * std::numbers::pi);
+  return scene.string.dispersed(q * std::sqrt(1 + epsilon * q * q) / (2 * std::numbers::pi));
 }
 
 }  // namespace detail

@@ -63,8 +63,9 @@ public:
     const complex w(s.imag(), -s.real());
     q_ = phase_rate(w, epsilon);
     const double f = std::abs(s.imag()) / (2 * std::numbers::pi), real_w = 2 * std::numbers::pi * f;
-    q_ -= complex(0, real_w * scene.string.loss.inverse_q(f) / 2 * slowness_ratio(real_w, epsilon));
-    modulus_ = complex(1, scene.string.loss.inverse_q(f) / 2);
+    const loss_law& loss = scene.string.loss;
+    q_ += slowness_ratio(real_w, epsilon) * complex(s.imag() * loss.lead(f), -real_w * loss.inverse_q(f) / 2);
+    modulus_ = complex(1, loss.inverse_q(f) / 2);
     load_s_ = s * plain::reciprocal(1.0 + scene.loaded_loss * (modulus_ - 1.0));
     own_loss_ = (1 - scene.loaded_loss) * modulus_.imag() / std::numbers::pi;
     K_ = epsilon * q_ * q_;

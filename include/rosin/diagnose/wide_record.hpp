@@ -135,7 +135,7 @@ private:
   [[nodiscard]] std::array<complex, 8> passage(double f, double d, const torsion_pair& torsion) const {
     if (f == 0) return {};
     const double w = 2 * std::numbers::pi * f, eps = take_.stiffness_s2, Z = take_.impedance_Ns_m * wave_impedance_ratio(w, eps);
-    const complex g(0.5 * w * take_.inverse_q * slowness_ratio(w, eps), phase_rate(w, eps));
+    const complex g = propagation_rate(f, eps, take_.loss);
     const complex near_field(0, -near_field_ratio(w, eps) / (2 * Z * force_factor(w, eps)));
     const double a = take_.delay_s[0] - d, b = take_.delay_s[1] - d;
     const plain::hyperbolic half(g * d);

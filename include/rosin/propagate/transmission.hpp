@@ -19,8 +19,8 @@ namespace rosin {
 
 /// gamma c in 1/s: complex rate of phase and loss per second of travel.
 [[nodiscard]] inline std::complex<double> propagation_rate(double frequency_Hz, double stiffness_s2, const loss_law& loss) {
-  const double w = 2 * std::numbers::pi * frequency_Hz;
-  return {w * loss.inverse_q(frequency_Hz) / 2 * slowness_ratio(w, stiffness_s2), phase_rate(w, stiffness_s2)};
+  const double w = 2 * std::numbers::pi * frequency_Hz, slow = slowness_ratio(w, stiffness_s2);
+  return {w * loss.inverse_q(frequency_Hz) / 2 * slow, phase_rate(w, stiffness_s2) + w * slow * loss.lead(frequency_Hz)};
 }
 
 /// One passage of travel time `delay_s` (s, >= 0).

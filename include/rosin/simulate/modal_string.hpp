@@ -84,7 +84,7 @@ struct string_mode {
     const double stiff = string.bending_stiffness_Nm2 * k * k / string.tension_N;
     const double omega = string.wave_speed_m_s() * k * std::sqrt(1 + stiff);
     if (!(omega <= 2 * pi * limit_Hz)) return modes;
-    modes.push_back({n, omega, string.loss.inverse_q(omega / (2 * pi)), string.linear_density_kg_m() * string.length_m / 2,
+    modes.push_back({n, omega * std::exp(string.loss.quickening(omega / (2 * pi))), string.loss.inverse_q(omega / (2 * pi)), string.linear_density_kg_m() * string.length_m / 2,
                      string.tension_N * k * (1 + stiff)});
   }
 }
@@ -109,6 +109,7 @@ namespace detail {
   m.near_fields = kappa * L;
   m.omega_rad_s = string.wave_speed_m_s() * q * std::sqrt(1 + B * q * q / T);
   m.inverse_quality = string.loss.inverse_q(m.omega_rad_s / (2 * pi));
+  m.omega_rad_s *= std::exp(string.loss.quickening(m.omega_rad_s / (2 * pi)));
   std::array<double, 2> force{};
   double square = L / 2;  // of the shape, over the length
   for (std::size_t e = 0; e < 2; ++e) {

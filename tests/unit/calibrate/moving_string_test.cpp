@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/calibrate/moving_string.hpp>
+#include <rosin/propagate/transmission.hpp>
 
 #include <doctest/doctest.h>
 
@@ -49,5 +50,14 @@ TEST_CASE("the derivatives are those of the forces") {
       CHECK(std::abs((a.force[j] - b.force[j]) / (2 * h) - r.by_phase[j][by]) < 1e-7);
       CHECK(std::abs((c.force[j] - d.force[j]) / (2 * h) - r.by_admittance[j][by]) < 1e-7);
     }
+  }
+}
+
+TEST_CASE("at real frequencies a passage is that of the reconstruction, causal loss included") {
+  const rosin::loss_law causal{.quality = 300, .causality = 1, .drag_Hz = 0.1, .reference_Hz = 440};
+  for (const double f : {300.0, 5200.0, -5200.0}) {
+    const rosin::passage_at p({0, 2 * std::numbers::pi * f}, epsilon, causal);
+    const complex there = rosin::propagation_rate(std::abs(f), epsilon, causal);
+    CHECK(std::abs(p.gamma_per_s - (f > 0 ? there : std::conj(there))) < 1e-9 * std::abs(there));
   }
 }

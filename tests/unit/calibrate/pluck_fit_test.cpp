@@ -8,8 +8,10 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "support/approx.hpp"
+#include "support/causal_string.hpp"
 
 namespace {
 
@@ -141,4 +143,34 @@ TEST_CASE("what cannot be fitted is said by take and reason") {
   std::swap(swapped.force_N[0], swapped.force_N[1]);
   CHECK(message(swapped).find("do not ring as the declared string") != std::string::npos);
   CHECK(rosin::fit_plucks({}, guess).error() == "no pluck to fit");
+}
+
+TEST_CASE("a string whose loss is causal is fitted as one, to the noise; one whose modes lose one by one is not") {
+  const test::causal_string causal{.fundamental_Hz = 440, .quality = 400};
+  const double rate = 96e3;
+  std::mt19937_64 random{77};
+  std::normal_distribution<double> noise{0, 3e-4};
+  std::vector<rosin::pluck_take> takes;
+  for (const double position : {0.3, 0.17}) {
+    rosin::pluck_take take{.name = "causal", .rate_Hz = rate, .position = position + 0.002};
+    take.force_N = causal.pluck(position, 0.004, rate, 20000, {44e3, 47e3});
+    for (auto& channel : take.force_N)
+      for (double& x : channel) x += noise(random);
+    takes.push_back(take);
+  }
+  const auto fit = rosin::fit_plucks(takes, {.fundamental_Hz = 441});
+  REQUIRE_MESSAGE(fit, fit.error());
+  MESSAGE(fit->misfit);
+  CHECK_FALSE(fit->more_than_noise);
+  CHECK(fit->layout.is_free(layout::causality));
+  CHECK(fit->value[layout::causality] == test::approx(1).epsilon(0.01));
+  CHECK(fit->value[layout::fundamental] == test::approx(440).epsilon(2e-6));  // 1 / (pi Q)^2: what "at the pitch" means
+  CHECK(std::abs(fit->value[layout::inharmonicity]) < 1e-7);
+  CHECK(1 / fit->value[layout::inverse_quality] == test::approx(400).epsilon(0.01));
+  CHECK(fit->noise_N[0] == test::approx(3e-4).epsilon(0.03));
+
+  const auto plain = rosin::fit_plucks({pluck(0.3, 1, 1)}, {.fundamental_Hz = 660});
+  REQUIRE_MESSAGE(plain, plain.error());
+  CHECK_FALSE(plain->layout.is_free(layout::causality));
+  CHECK(plain->value[layout::causality] == 0);
 }

@@ -28,7 +28,7 @@ std::vector<rosin::pluck_take> three_takes() {
 
 TEST_CASE("every parameter has a place and a name of its own; equal positions share one") {
   const layout l(three_takes(), {});
-  CHECK(l.size() == 8 + 2 + 3 * 4);
+  CHECK(l.size() == 10 + 2 + 3 * 4);
   CHECK(l.position(0) == l.position(2));
   CHECK(l.position(0) != l.position(1));
   std::set<std::string> names;
@@ -61,6 +61,9 @@ TEST_CASE("options fix parameters; the inverse leaves them out") {
   CHECK_FALSE(l.is_free(layout::internal_loss));
   CHECK_FALSE(l.is_free(layout::air_loss));
   CHECK(l.is_free(layout::convention));
+  CHECK_FALSE(l.is_free(layout::causality));
+  CHECK_FALSE(l.is_free(layout::loss_drag));
+  CHECK(layout(three_takes(), {.causality = true}).is_free(layout::causality));
   Eigen::MatrixXd h = Eigen::MatrixXd::Identity(l.size(), l.size()) * 4;
   h(0, 2) = h(2, 0) = 1;
   const Eigen::MatrixXd inverse = rosin::invert_free(l, h);

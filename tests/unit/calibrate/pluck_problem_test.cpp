@@ -35,12 +35,13 @@ TEST_CASE("gradient and Hessian are the derivatives of the cost, AC-coupled sens
   for (const double corner_Hz : {0.0, 5.0}) {
     const auto data = takes();
     const rosin::pluck_guess guess{.fundamental_Hz = 500, .ac_coupled_Hz = {corner_Hz, corner_Hz}};
-    const rosin::pluck_options options{.air_loss = true};
+    const rosin::pluck_options options{.air_loss = true, .causality = true};
     const rosin::pluck_layout layout(data, options);
     Eigen::VectorXd v = layout.initial(data, guess, 503.0, {0.003, 0.0031}, {0.31, 0.31});
     v[rosin::pluck_layout::inharmonicity] = 7e-5;
     v[rosin::pluck_layout::internal_loss] = 1e-8;
     v[rosin::pluck_layout::convention] = -0.5;
+    v[rosin::pluck_layout::causality] = 0.8, v[rosin::pluck_layout::loss_drag] = 0.01;
     const rosin::pluck_problem problem(data, {layout, guess.ac_coupled_Hz}, options, guess, v, 12, 1e9, false, {0.1, 0.3});
     const rosin::normal_equations at = problem.linearise(v);
     CHECK((at.hessian - at.hessian.transpose()).norm() < 1e-9 * at.hessian.norm());

@@ -223,3 +223,18 @@ TEST_CASE("ends that are alike have poles of their own: all lines together are w
     for (std::size_t e = 0; e < 2; ++e) CHECK(sum[e] == test::approx(held[e]).epsilon(2e-3));
   }
 }
+
+TEST_CASE("where the loss is causal the loop's poles and residues are those of the dispersed partials") {
+  rosin::pluck_scene s = scene();
+  s.string.inharmonicity = 0;  // the loop and the modes disperse a stiff string alike to first order only
+  s.string.loss = {.quality = 400, .causality = 1, .reference_Hz = s.string.fundamental_Hz};
+  const auto lines = rosin::decay_lines(s, 0.3, rosin::string_poles(s, 20e3, 40));
+  const auto plain = rosin::pluck_lines(s.string, 0.3, 0, {20e3, 20e3}, 40);
+  REQUIRE(lines.size() == plain.size());
+  for (std::size_t n = 0; n < lines.size(); ++n) {
+    CHECK(std::abs(lines[n].pole - plain[n].pole) < 3e-6 * std::abs(plain[n].pole));
+    for (std::size_t e = 0; e < 2; ++e) CHECK(std::abs(std::abs(lines[n].residue[e]) - std::abs(plain[n].residue[e])) < 1e-5);
+  }
+  CHECK(plain[30].pole.imag() / (31 * plain[0].pole.imag()) ==
+        test::approx(std::pow(31, 1 / (400 * std::numbers::pi))).epsilon(1e-5));
+}

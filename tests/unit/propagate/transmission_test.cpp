@@ -83,3 +83,25 @@ TEST_CASE("a round trip costs what the modes' Q says") {
     CHECK(std::norm(rosin::transmission{tau, epsilon, loss}(f)) == test::approx(std::exp(-w / (2 * 450.0) * seconds)));
   }
 }
+
+TEST_CASE(
+    "where the loss is causal, a round trip is a whole number of turns at the dispersed partials, and nothing arrives early") {
+  const double f0 = 440;
+  const rosin::loss_law loss{.quality = 300, .causality = 1, .reference_Hz = f0};
+  for (const int n : {1, 7, 40}) {
+    const double f = n * f0 * std::pow(n, 1 / (300 * std::numbers::pi - 1));
+    CHECK(rosin::propagation_rate(f, 0, loss).imag() / f0 == test::approx(2 * std::numbers::pi * n).epsilon(1e-7));
+  }
+  // What comes before the wave is what the low-pass rings by; a loss that does not disperse sends more ahead
+  const auto early = [&](double causality) {
+    rosin::loss_law law = loss;
+    law.causality = causality;
+    const double delay_s = 4.5 / f0;
+    const rosin::fir k = rosin::transmission_kernel(rosin::transmission{delay_s, 0, law}, limits, rate_Hz, 1e-6);
+    const double first = delay_s * rate_Hz * (1 + law.lead(40e3)) - 12;  // samples; of the fastest waves
+    double sum = 0;
+    for (std::size_t i = 0; i < k.taps.size() && k.first + static_cast<int>(i) < first; ++i) sum += k.taps[i];
+    return std::abs(sum);
+  };
+  CHECK(early(1) < 0.3 * early(0));
+}
