@@ -84,8 +84,8 @@ struct string_mode {
     const double stiff = string.bending_stiffness_Nm2 * k * k / string.tension_N;
     const double omega = string.wave_speed_m_s() * k * std::sqrt(1 + stiff);
     if (!(omega <= 2 * pi * limit_Hz)) return modes;
-    modes.push_back({n, omega * std::exp(string.loss.quickening(omega / (2 * pi))), string.loss.inverse_q(omega / (2 * pi)), string.linear_density_kg_m() * string.length_m / 2,
-                     string.tension_N * k * (1 + stiff)});
+    modes.push_back({n, omega * std::exp(string.loss.quickening(omega / (2 * pi))), string.loss.inverse_q(omega / (2 * pi)),
+                     string.linear_density_kg_m() * string.length_m / 2, string.tension_N * k * (1 + stiff)});
   }
 }
 
