@@ -3,9 +3,7 @@
 // The contact, on strokes that are reconstructed with all that the plucks tell: which effects of it does the declared model not
 // own up to?
 //
-#include "diagnose_parts.hpp"
-
-#include <rosin/diagnose/contact_cycle.hpp>
+#include "diagnose_contact_picture.hpp"
 
 #include <map>
 
@@ -156,38 +154,6 @@ std::optional<open_contact> left_open(const std::vector<diagnosed_stroke>& strok
   return shown_by(statistic, found);
 }
 
-/// The stretch of so many seconds in which most is left, summed over its samples; a few that stand out far count as four times
-/// the median.
-struct loud_stretch {
-  double begin_s = 0, sum = 0;
-};
-loud_stretch loudest(const rosin::contact_trace& trace, double length_s) {
-  std::vector<double> sizes;
-  for (const double x : trace.left) sizes.push_back(std::abs(x));
-  loud_stretch best;
-  if (sizes.empty()) return best;
-  std::vector<double> ordered = sizes;
-  std::nth_element(ordered.begin(), ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2), ordered.end());
-  const double most = 4 * ordered[ordered.size() / 2];
-  for (std::size_t i = 0, k = 0; i < sizes.size(); i = k) {
-    double sum = 0;
-    for (k = i; k < sizes.size() && trace.time_s[k] < trace.time_s[i] + length_s; ++k) sum += std::min(most, sizes[k]);
-    if (sum > best.sum) best = {trace.time_s[i], sum};
-  }
-  return best;
-}
-
-/// The take and the stretch of it that the page shows: four periods of the string, or of a ripple.
-contact_picture picture_of(const std::vector<rosin::contact_trace>& before, const std::string& statistic, double length_s) {
-  contact_picture out;
-  out.statistic = data_of(statistic);
-  loud_stretch most;
-  for (const auto& trace : before)
-    if (const auto here = loudest(trace, length_s); here.sum > most.sum) most = here, out.before = {trace}, out.take = trace.take;
-  out.shown_s = {most.begin_s, most.begin_s + length_s};
-  return out;
-}
-
 const std::vector<rosin::contact_trace>& traces_of(const std::string& statistic, const rosin::contact_findings& found) {
   return data_of(statistic) == "friction-residual" ? found.slipping : found.sticking;
 }
@@ -201,20 +167,6 @@ double shown_length_s(const rosin::contact_hypothesis& h, const std::vector<diag
     if (p.name == "frequency_Hz" && h.effect.find("ripple") != std::string::npos && p.value > 0)
       return periods_in_picture / p.value;
   return periods_in_picture * period_of(strokes);
-}
-
-/// What the model that was found leaves of the take that the page shows.
-void add_after(const std::vector<rosin::contact_trace>& after, contact_picture& picture) {
-  for (const auto& trace : after)
-    if (trace.take == picture.take) picture.after = {trace};
-}
-
-/// Finishes the picture; `alone`: nothing else is wrong with the rig, so that this is where it shows.
-void show(rig_diagnosis& d, double noise, bool alone) {
-  d.contact->noise = noise;
-  if (!d.contact->before.empty()) d.contact->cycle_before = rosin::left_by_part(d.contact->before.front());
-  if (!d.contact->after.empty()) d.contact->cycle_after = rosin::left_by_part(d.contact->after.front());
-  if (alone && !d.contact->before.empty()) d.take = d.contact->take, d.time_s = d.contact->shown_s;
 }
 
 using asked_contact = std::function<rosin::contact_findings(const rosin::contact_model&)>;
@@ -300,7 +252,8 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     const rosin::contact_hypothesis best = found.hypotheses.front();
     if (round == 0) {
       first = best.statistic;
-      d.contact = picture_of(best.before.empty() ? traces_of(first, found) : best.before, first, shown_length_s(best, strokes));
+      d.contact = contact_picture_of(best.before.empty() ? traces_of(first, found) : best.before, data_of(first),
+                                     shown_length_s(best, strokes));
       add_after(best.after, *d.contact);
     }
     gained[data_of(best.statistic)] += best.gain;
@@ -328,9 +281,10 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
   if (open && others == 0) judge_by(*open, d);
   if (open && others > 0) d.left_in_strokes = open;
   if (open && open->statistic != "force-consistency")
-    d.contact = picture_of(traces_of(open->statistic, found), open->statistic, periods_in_picture * period_of(strokes)),
+    d.contact =
+        contact_picture_of(traces_of(open->statistic, found), data_of(open->statistic), periods_in_picture * period_of(strokes)),
     first = open->statistic;
-  if (d.contact) show(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
+  if (d.contact) show_contact(d, others == 0 ? d.noise_floor : floor_in(data_of(first), found), others == 0);
   if (!named) return !open;
   const bool most_is_left = others == 0 && d.after > std::max(2 * d.noise_floor, most_left * d.before);
   if (!most_is_left && accounted()) return true;
