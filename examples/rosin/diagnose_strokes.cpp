@@ -191,7 +191,7 @@ rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_strok
   t.impedance_Ns_m = s.calibration.at.impedance_Ns_m, t.length_m = rig.string.length_m.value_or(0);
   t.noise_N = noise_of(s.calibration);
   t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.level_sd_N = s.level_sd_N, t.edge_Hz = 0.45 * s.rate_Hz;
-  rosin::follow_start(t);
+  rosin::follow_start(t, declared_contact(rig).torsion);
   return t;
 }
 

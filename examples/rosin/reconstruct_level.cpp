@@ -20,10 +20,11 @@ std::optional<rosin::dc_estimate> level_by_law(const rosin::rig& rig, const take
   t.delay_s = at.delay_s, t.stiffness_s2 = at.stiffness_s2, t.impedance_Ns_m = at.impedance_Ns_m, t.edge_Hz = r.limits.stop_Hz;
   const auto middle = (r.known.begin + r.known.end) / 2;
   t.force_sd_N = r.force_sd_N[middle], t.velocity_sd_m_s = r.velocity_sd_m_s[middle];
-  rosin::follow_start(t);
-  if (r.known.end < r.known.begin + 2000 || !(rod_m_s != 0)) return std::nullopt;
+  t.loss = at.loss;
   rosin::contact_model model;
   if (rig.torsion) model.torsion = rosin::torsion_values{rig.torsion->speed_ratio, rig.torsion->impedance_ratio, rig.torsion->q};
+  rosin::follow_start(t, model.torsion);
+  if (r.known.end < r.known.begin + 2000 || !(rod_m_s != 0)) return std::nullopt;
   rosin::stick_bench sticks({t}, model);
   if (sticks.records().size() != 1 || !sticks.usable()) return std::nullopt;
   const auto slips = rosin::slip_records(sticks, {t});

@@ -19,6 +19,7 @@ class stick_bench {
 public:
   static constexpr double passed_noise = 0.35;  ///< share of white noise's power that the window passes
   static constexpr double least_share = 0.6;    ///< of what the reconstruction does not know, the least that a fit may see
+  static constexpr double most_trend = 2;       ///< of torsion's loss, in those of a flat spectrum of relaxations
 
   [[nodiscard]] static std::vector<stick_take> stick_takes(const std::vector<contact_take>& takes) {
     std::vector<stick_take> out;
@@ -32,7 +33,8 @@ public:
       : records_{detail::records_of(stick_takes(takes))}, model_{model} {
     if (records_.empty()) return;
     for (const auto& t : takes)
-      doubt_ = std::max(doubt_, doubt(t)), normal_force_N_.push_back(t.normal_force_N), noise_N_.push_back(t.noise_N);
+      doubt_ = std::max(doubt_, doubt(t)), normal_force_N_.push_back(t.normal_force_N), noise_N_.push_back(t.noise_N),
+      beside_waves_ = std::max(beside_waves_, beside_waves(t));
     doubt_ = std::hypot(doubt_, bristle_noise_m_s());
     free_ = fit_torsion(stick_takes(takes), model.torsion);
     mark();
@@ -75,6 +77,8 @@ public:
       auto target = record.relative_m_s();
       if (torsion) detail::add_to(target, record.force_through(torsion_at_contact(record.take(), *torsion, damping)));
       for (int k = 0; torsion && k < 3; ++k) shared.push_back(slope(record, *torsion, damping, k));
+      if (torsion) shared.push_back(trend(record, *torsion));
+      shared.push_back(record.force_N());
       for (auto& column : shared)
         for (double& v : column) v = -v;
       const auto which = d.rows.size();
@@ -84,6 +88,8 @@ public:
     d.add_bound(-1.5, 1.5);
     for (int k = 0; torsion && k < 3; ++k)
       d.add_bound(loose ? -1.0 : -2 * model_.torsion_tolerance[k], loose ? 1.0 : 2 * model_.torsion_tolerance[k]);
+    if (torsion) d.add_bound(-most_trend, most_trend);
+    d.add_bound(-1.2 * beside_waves_, 0.2 * beside_waves_);
     include_found(d);
     return d;
   }
@@ -155,6 +161,22 @@ private:
     return record.force_through(transfer_slope<torsion_at_contact>{with(up), with(down), 1 / (2 * step)});
   }
 
+  /// 1 / (2 pi Z Q), m/s per N: by so much of the force is the velocity too high that waves tell of a string that is damped mode by
+  /// mode (string_response.hpp: what its modes lose at a load itself).
+  [[nodiscard]] static double beside_waves(const contact_take& t) {
+    return t.loss.inverse_q(0.5 / (t.delay_s[0] + t.delay_s[1])) / (2 * std::numbers::pi * t.impedance_Ns_m);
+  }
+  /// The loss of torsion is not the same at all frequencies: of a trend as large as a flat spectrum of relaxations has it.
+  [[nodiscard]] static std::vector<double> trend(stick_record& record, const torsion_values& at) {
+    constexpr double step = 0.01;
+    torsion_waveguide up =
+        torsion_of(record.take().delay_s, record.take().impedance_Ns_m, at.speed_ratio, at.impedance_ratio, at.q);
+    up.causal = true;
+    torsion_waveguide down = up;
+    up.trend = step, down.trend = -step;
+    return record.force_through(transfer_slope<torsion_waveguide>{up, down, 1 / (std::numbers::pi * at.q * step)});
+  }
+
   void mark() {
     rows_ = 0;
     for (auto& record : records_) {
@@ -204,6 +226,11 @@ private:
                                 1e6 / *model_.bristle_stiffness_N_m));
       d.add_bound(0, 1e9);
     }
+    if (model_.creep_sharpness) {
+      for (std::size_t t = 0; t < records_.size(); ++t)
+        d.add_shared(t, creep_column(records_[t].force_N(), normal_force_N_[t], *model_.creep_sharpness));
+      d.add_bound(0, 1e9);
+    }
     if (model_.speed_ripple_Hz) add_rod_tone(d, *model_.speed_ripple_Hz);
   }
 
@@ -226,6 +253,7 @@ private:
   contact_model model_;
   outcome<torsion_fit_result> free_ = failure{"not fitted"};
   double doubt_ = 0;
+  double beside_waves_ = 0;
   std::size_t rows_ = 0;
   std::vector<std::vector<char>> marked_;
   std::vector<std::vector<double>> relative_;

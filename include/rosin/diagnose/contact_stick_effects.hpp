@@ -238,10 +238,8 @@ template <std::size_t N>
   std::vector<std::vector<double>> force;
   for (auto& record : bench.records()) force.push_back(record.force_N());
   const auto columns = [&](double sharp) {
-    auto out = force;
-    for (std::size_t t = 0; t < out.size(); ++t)
-      for (double& f : out[t])
-        f = -std::copysign(std::exp(std::min(4.0, (std::abs(f) / takes[t].normal_force_N - 1) / sharp)), f);
+    std::vector<std::vector<double>> out;
+    for (std::size_t t = 0; t < force.size(); ++t) out.push_back(creep_column(force[t], takes[t].normal_force_N, sharp));
     return out;
   };
   double best = 0, sharp = 0.1;

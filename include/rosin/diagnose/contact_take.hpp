@@ -8,7 +8,9 @@
 //
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -43,12 +45,26 @@ struct contact_take {
   rod_approach approach{};                       ///< to that speed, where it is slower still
 };
 
+/// The velocity of the string's surface at the contact, as torsion under the force has it; where that is not known, of the centre.
+[[nodiscard]] inline std::vector<double> surface_m_s(const contact_take& t, const std::optional<torsion_values>& torsion) {
+  std::vector<double> out(t.velocity_m_s.begin(), t.velocity_m_s.end());
+  if (!torsion || t.force_N.size() != out.size()) return out;
+  const auto is_known = [](double force_N) { return std::isfinite(force_N); };
+  const auto begin = std::find_if(t.force_N.begin(), t.force_N.end(), is_known),
+             end = std::find_if_not(begin, t.force_N.end(), is_known);
+  const auto guide = torsion_of(t.delay_s, t.impedance_Ns_m, torsion->speed_ratio, torsion->impedance_ratio, torsion->q);
+  const auto rolling = torsion_velocity(guide, std::span(begin, end), t.rate_Hz);
+  const auto first = static_cast<std::size_t>(begin - t.force_N.begin());
+  for (std::size_t i = 0; i < rolling.size(); ++i) out[first + i] += rolling[i];
+  return out;
+}
+
 /// Finds how a stroke's rod approaches its speed, and until when too much of that is missing to count; nothing changes where the rod
-/// is as fast as declared by start_s.
-inline void follow_start(contact_take& t) {
+/// is as fast as declared by start_s. What sticks to the rod is the surface: the centre's median rises besides while a string settles.
+inline void follow_start(contact_take& t, const std::optional<torsion_values>& torsion = {}) {
   constexpr double missing = 0.1;
   const double period_s = 2 * (t.delay_s[0] + t.delay_s[1]);
-  t.approach = find_rod_approach(t.velocity_m_s, t.rate_Hz, period_s, t.rod_speed_m_s, t.start_s);
+  t.approach = find_rod_approach(surface_m_s(t, torsion), t.rate_Hz, period_s, t.rod_speed_m_s, t.start_s);
   t.start_s = std::max(t.start_s, t.approach.within_s(missing));
 }
 
@@ -64,6 +80,7 @@ struct contact_model {
   std::optional<double> bristle_stiffness_N_m{}, bristle_delay_s{};
   bristle_yield yields{};
   std::optional<double> speed_ripple_Hz{}, normal_ripple_Hz{};
+  std::optional<double> creep_sharpness{};
   std::optional<std::array<double, 2>> heat{};  ///< layer (m) and area per newton (m^2) of a contact that remembers heat
   double width_s = 0;                           ///< travel time of transverse waves over a contact of some width; 0: a point
   double edge_Hz = 0;                           ///< beyond it noise takes over what is included; 0: nowhere
@@ -133,6 +150,7 @@ struct contact_hypothesis {
     model.yields.limit = value("friction_limit"), model.yields.weakening_s_m = value("weakening_s_m");
     if (value("elastic_share") > 0) model.yields.elastic = value("elastic_share");
   }
+  if (found.effect == "creep") model.creep_sharpness = value("sharpness");
   if (found.effect == "speed-ripple") model.speed_ripple_Hz = value("frequency_Hz");
   if (found.effect == "normal-force-ripple") model.normal_ripple_Hz = value("frequency_Hz");
   if (found.effect == "thermal-friction") {

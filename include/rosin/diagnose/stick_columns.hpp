@@ -44,6 +44,12 @@ struct rod_mobility {
   return wave;
 }
 
+/// How forces make what sticks creep, for a speed of 1 m/s under a force as large as the normal force.
+[[nodiscard]] inline std::vector<double> creep_column(std::vector<double> force_N, double normal_force_N, double sharpness) {
+  for (double& f : force_N) f = -std::copysign(std::exp(std::min(4.0, (std::abs(f) / normal_force_N - 1) / sharpness)), f);
+  return force_N;
+}
+
 namespace detail {
 
 /// What the sensors' noise is in a row of columns F_1, F_2 (asked by frequency), rms, through a window.

@@ -12,7 +12,7 @@
 #pragma once
 
 #include <rosin/diagnose/contact_stick.hpp>
-#include <rosin/propagate/dispersion.hpp>
+#include <rosin/propagate/transmission.hpp>
 #include <rosin/torsion/torsion_pair.hpp>
 
 #include <type_traits>

@@ -15,6 +15,13 @@
 //
 // w_1 the first torsional resonance, where speed and impedance are told. The product of both, the inertia, has no loss.
 //
+// No material keeps to that: the loss has a trend. With a loss angle that falls by `trend` of itself for each e-th of frequency, the
+// stiffness goes as causality asks (d ln M' / d ln w = 2 / pi times the loss angle),
+//
+//     delta = delta_1 (1 - trend L),    ln M' = (2 delta_1 / pi) (L - trend L^2 / 2),    L = ln(w / w_1).
+//
+// A flat spectrum of relaxations, whose loss modulus is the same at all frequencies while the stiffness rises, has 2 / (pi Q).
+//
 // It is one transfer function, applied to the whole record at once: Q is as low as 15, so that all memory ends within a few dozen of
 // the torsional periods, and zeros behind the record keep its end out of its beginning.
 //
@@ -38,11 +45,12 @@ struct causal_loss {
   double per_phase = 0;             ///< loss a radian
   std::complex<double> softer = 1;  ///< of the mobility
 
-  causal_loss(double q, double over_first) noexcept : per_phase{1 / (2 * q)} {
+  causal_loss(double q, double over_first, double trend = 0) noexcept : per_phase{1 / (2 * q)} {
     if (!(over_first > 0)) return;
-    const double angle = std::atan(1 / q);
-    sooner = std::pow(over_first, -angle / std::numbers::pi);
-    per_phase = std::tan(angle / 2), softer = std::polar(sooner, -angle / 2);
+    const double at_first = std::atan(1 / q), since = std::log(over_first), angle = at_first * (1 - trend * since);
+    const double speed = std::exp(at_first / std::numbers::pi * since * (1 - 0.5 * trend * since));
+    sooner = std::cos(angle / 2) / (speed * std::cos(at_first / 2));
+    per_phase = std::tan(angle / 2), softer = std::polar(1 / speed, -angle / 2);
   }
 };
 
@@ -52,12 +60,13 @@ struct torsion_waveguide {
   double impedance_Ns_m = 0;
   double q = 15;
   bool causal = false;  ///< with the dispersion and the stiffness that belong to the loss
+  double trend = 0;     ///< of the loss angle, where it is causal: by how much of itself it falls for each e-th of frequency
 
   /// Surface velocity for 1 N at a frequency in Hz, m/s per N.
   [[nodiscard]] std::complex<double> operator()(double frequency_Hz) const noexcept {
     const double w = 2 * std::numbers::pi * frequency_Hz;
     if (w == 0) return 0;
-    const causal_loss loss(q, causal ? std::abs(w) * (delay_s[0] + delay_s[1]) / std::numbers::pi : 0);
+    const causal_loss loss(q, causal ? std::abs(w) * (delay_s[0] + delay_s[1]) / std::numbers::pi : 0, trend);
     const auto round_trip = [&](double delay) {
       return std::exp(-2 * delay * loss.sooner * std::complex<double>(std::abs(w) * loss.per_phase, w));
     };

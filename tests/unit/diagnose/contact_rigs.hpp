@@ -32,7 +32,7 @@ struct stroke {
     t.name = "bow";
     t.force_N = force, t.velocity_m_s = velocity, t.velocity_near_m_s = velocity_near, t.velocity_far_m_s = velocity_far;
     t.near_N = near, t.far_N = far, t.rate_Hz = rate, t.rod_speed_m_s = speed, t.normal_force_N = normal;
-    t.delay_s = at.delay_s, t.stiffness_s2 = at.stiffness_s2, t.inverse_q = 1e-3, t.impedance_Ns_m = at.impedance_Ns_m,
+    t.delay_s = at.delay_s, t.stiffness_s2 = at.stiffness_s2, t.loss = at.loss, t.impedance_Ns_m = at.impedance_Ns_m,
     t.length_m = e_string.length_m;
     t.force_sd_N = 4 * noise / 3, t.velocity_sd_m_s = 5 * noise, t.noise_N = {noise, noise}, t.edge_Hz = 57600, t.start_s = 0.02;
     return t;

@@ -13,6 +13,15 @@ TEST_CASE("stick columns: bristles are a spring with a delay") {
   CHECK(std::abs(rosin::bristle_bending(1e7, 1e-4) + 1e-6 / 1e-4) < 1e-4);  // dampers at last
 }
 
+TEST_CASE("stick columns: creep is against the force, and grows e-fold for each share of the normal force") {
+  const auto v = rosin::creep_column({0.5, -0.5, 0.4, 0}, 0.5, 0.2);
+  CHECK(v[0] == test::approx(-1));
+  CHECK(v[1] == test::approx(1));
+  CHECK(v[2] == test::approx(-std::exp(-1.0)));
+  CHECK(std::abs(v[3]) == test::approx(std::exp(-5.0)));
+  CHECK(rosin::creep_column({50}, 0.5, 0.2)[0] == test::approx(-std::exp(4.0)));  // no further
+}
+
 TEST_CASE("stick columns: a rod moves by its spring below its resonance, by its mass above, and by its loss there") {
   const rosin::rod_mobility rod{800, 40, 0.003};
   const double w0 = 2 * std::numbers::pi * 800;

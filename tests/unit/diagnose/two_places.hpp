@@ -84,7 +84,7 @@ inline rosin::contact_take take_of(const two_places& truth, double position) {
   rosin::contact_take take;
   take.near_N = truth.near, take.far_N = truth.far, take.force_N = truth.near, take.velocity_m_s = truth.v_near;
   take.rate_Hz = rate, take.rod_speed_m_s = 1e-9, take.delay_s = at.delay_s, take.impedance_Ns_m = at.impedance_Ns_m,
-  take.stiffness_s2 = at.stiffness_s2, take.inverse_q = 1e-3;
+  take.stiffness_s2 = at.stiffness_s2, take.loss = at.loss;
   return take;
 }
 

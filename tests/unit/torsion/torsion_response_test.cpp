@@ -105,6 +105,31 @@ TEST_CASE("torsion: a causal loss in the stress is the sum of the modes of a str
   }
 }
 
+TEST_CASE("torsion: the trend of a flat spectrum of relaxations, against the sum of its modes") {
+  const double q = 15, per_efold = 2 / (std::numbers::pi * q);
+  auto with = e_string(q);
+  with.causal = true;
+  auto without = with;
+  with.trend = per_efold;
+  const double tau = with.delay_s[0] + with.delay_s[1], first = std::numbers::pi / tau, p = with.delay_s[0] / tau,
+               angle = std::atan(1 / q), inertia = with.impedance_Ns_m * tau / std::cos(angle / 2);
+  double off = 0, off_without = 0;
+  for (const double f : {1e3, 3e3, 8e3, 1.3e4, 2e4}) {
+    const double w = 2 * std::numbers::pi * f;
+    // a loss modulus that is the same at all frequencies, and the stiffness that goes with it
+    const complex modulus =
+        (complex(1, 1 / q) + per_efold * std::log(w / first)) / std::abs(complex(1, 1 / q)) * std::pow(std::cos(angle / 2), 2);
+    complex sum = 0;
+    for (int n = 1; n <= 100000; ++n)
+      sum += 2 * std::pow(std::sin(n * std::numbers::pi * p), 2) * complex(0, w) /
+             (inertia * (modulus * (n * first) * (n * first) - w * w));
+    off = std::max(off, std::abs(with(f) - sum) / std::abs(sum));
+    off_without = std::max(off_without, std::abs(without(f) - sum) / std::abs(sum));
+  }
+  CHECK(off < 0.006);
+  CHECK(off < 0.2 * off_without);
+}
+
 TEST_CASE("torsion: nothing moves under a steady force, and nothing overflows") {
   const auto at = e_string(15);
   CHECK(std::abs(at(0.0)) == 0);
