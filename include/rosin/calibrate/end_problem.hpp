@@ -240,7 +240,6 @@ inline end_problem::rows end_problem::at(const end_model& m, const Eigen::Vector
                                 {layout::internal_loss, 1U},
                                 {layout::air_loss, 2U},
                                 {layout::causality, 3U},
-
                                 {layout::loss_drag, 4U}})
       put(of,
           by_gamma * b.slope_loss[k] - gone * (1 + v[layout::convention]) * (A - still) * complex(0, 0.5 * b.slope_inverse_q[k]));

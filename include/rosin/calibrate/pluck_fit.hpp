@@ -150,10 +150,10 @@ inline void approach_and_finish(const std::vector<pluck_take>& takes, const pluc
   }
 }
 
-/// What a fit with causal loss and more of the record, or as much and a third of the excess, is taken for.
+/// Strengths of dispersion that may be loss that is causal, and not something else that disperses.
 inline bool is_causal(double causality) { return causality > 0.2 && causality < 1.5; }
 
-/// The same fit with loss that may disperse, where that is what was missing.
+/// The same fit with loss that may disperse, where that follows more of the record, or as much and leaves a third of the excess.
 inline void try_causality(const std::vector<pluck_take>& takes, const pluck_guess& guess, pluck_options options,
                           const Eigen::VectorXd& begin, pluck_fit_result& result) {
   if (options.causality || !result.more_than_noise) return;

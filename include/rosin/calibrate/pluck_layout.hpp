@@ -194,11 +194,11 @@ public:
   };
   [[nodiscard]] knowledge prior(Eigen::Index p, const std::vector<pluck_take>& takes, const pluck_guess& guess) const {
     if (p == gain_near || p == gain_far) return {0, guess.gain_tolerance[static_cast<std::size_t>(p - gain_near)] / 2};
-    if (p == convention) return {0, 1.5};                                        // conventions lie between -1 and 1
-    if (p == causality) return {0.5, 0.5};                                       // between 0 and 1
-    if (p == loss_drag) return {0, 0.1 * guess.fundamental_Hz / guess.quality};  // a tenth of the loss at the first partial,
-    if (p == internal_loss && options_.causality && !options_.internal_loss)     // and at the thirtieth: no law is exact
-      return {0, 0.1 / (guess.quality * 30 * guess.fundamental_Hz)};
+    if (p == convention) return {0, 1.5};   // conventions lie between -1 and 1
+    if (p == causality) return {0.5, 0.5};  // between 0 and 1
+    // a tenth of the loss at the first partial and at the thirtieth: no law is exact
+    if (p == loss_drag) return {0, 0.1 * guess.fundamental_Hz / guess.quality};
+    if (p == internal_loss && !options_.internal_loss) return {0, 0.1 / (guess.quality * 30 * guess.fundamental_Hz)};
     if (p == inharmonicity && options_.stiffness && guess.inharmonicity > 0)
       return {guess.inharmonicity, 0.3 * guess.inharmonicity};  // for what does not tell it yet: short looks, few partials
     if (p >= first_of_ends()) return {0, end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3] / 2};
