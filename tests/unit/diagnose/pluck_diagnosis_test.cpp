@@ -4,10 +4,13 @@
 
 #include "plucked.hpp"
 #include "support/approx.hpp"
+#include "support/causal_string.hpp"
 
 #include <rosin/simulate/burdened_signals.hpp>
 
 #include <doctest/doctest.h>
+
+#include <random>
 
 namespace {
 
@@ -34,6 +37,36 @@ TEST_CASE("a string as declared is left alone, and predicted to the noise") {
   CHECK(d->best.effects.empty());
   CHECK(d->before < 1.2 * d->floor);
   CHECK(d->before > 0.8 * d->floor);
+}
+
+TEST_CASE("a string whose loss is causal is no mismatch, and what is hidden beside it is found" * doctest::test_suite("long")) {
+  for (const double leaks : {0.0, 0.004}) {
+    CAPTURE(leaks);
+    std::mt19937_64 random{5};
+    std::normal_distribution<double> noise{0, 3e-4};
+    std::vector<rosin::pluck_take> takes;
+    for (const double force_N : {1.0, 0.5, 0.75}) {
+      rosin::pluck_take take{
+          .name = "causal " + std::to_string(takes.size()), .rate_Hz = 96e3, .strength_N = force_N, .position = 0.3};
+      take.force_N = test::causal_string{.fundamental_Hz = 660, .quality = 500}.pluck(0.3, 0.004, 96e3, 12000, {44e3, 47e3});
+      for (std::size_t i = 0; i < 12000; ++i) {
+        const double near = force_N * take.force_N[0][i], far = force_N * take.force_N[1][i];
+        take.force_N[0][i] = near + leaks * far + noise(random), take.force_N[1][i] = far + leaks * near + noise(random);
+      }
+      takes.push_back(take);
+    }
+    const auto d = look({takes[0], takes[1]}, takes[2]);
+    REQUIRE_MESSAGE(d, d.error());
+    CHECK(d->data.options.causality);
+    CHECK(d->explained);
+    CHECK(d->mismatched == (leaks > 0));
+    CHECK(d->after < 1.2 * d->floor);
+    CHECK(d->best.value[rosin::pluck_layout::causality] == test::approx(1).epsilon(0.01));
+    REQUIRE(d->best.effects.size() == (leaks > 0 ? 1 : 0));
+    if (leaks == 0) continue;
+    CHECK(d->best.effects[0].id() == "channel-crosstalk");
+    CHECK(d->best.value[d->data.layout.size()] == test::approx(leaks).epsilon(0.05));
+  }
 }
 
 TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck that was kept aside is predicted" *
