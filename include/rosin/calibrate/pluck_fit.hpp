@@ -150,8 +150,8 @@ inline void approach_and_finish(const std::vector<pluck_take>& takes, const pluc
   }
 }
 
-/// Strengths of dispersion that may be loss that is causal, and not something else that disperses.
-inline bool is_causal(double causality) { return causality > 0.2 && causality < 1.5; }
+/// Whether dispersion that was found may be loss that is causal, and not something else that disperses, or what was known before.
+inline bool is_causal(double causality, double sd) { return sd < 0.1 && causality > 0.2 && causality < 1.5; }
 
 /// The same fit with loss that may disperse, where that follows more of the record, or as much and leaves a third of the excess.
 inline void try_causality(const std::vector<pluck_take>& takes, const pluck_guess& guess, pluck_options options,
@@ -163,7 +163,7 @@ inline void try_causality(const std::vector<pluck_take>& takes, const pluck_gues
   approach_and_finish(takes, guess, options, other);
   const bool fits = other.horizon_periods > result.horizon_periods ||
                     (other.horizon_periods == result.horizon_periods && other.misfit - 1 < (result.misfit - 1) / 3);
-  if (fits && is_causal(other.value[pluck_layout::causality])) result = std::move(other);
+  if (fits && is_causal(other.value[pluck_layout::causality], other.sd[pluck_layout::causality])) result = std::move(other);
 }
 
 }  // namespace detail

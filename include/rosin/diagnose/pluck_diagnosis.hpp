@@ -40,7 +40,8 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   freed.layout = pluck_layout(data.takes, freed.options, data.guess.ends);
   const scene_fit tried =
       fit_scene(freed, found.effects, found.value, {{1000, found.horizon_periods, true, freed.compared()}}, noise);
-  return is_causal(tried.value[pluck_layout::causality]) && tried.quality.inflation() - 1 < (found.quality.inflation() - 1) / 3;
+  return is_causal(tried.value[pluck_layout::causality], tried.sd[pluck_layout::causality]) &&
+         tried.quality.inflation() - 1 < (found.quality.inflation() - 1) / 3;
 }
 
 /// Of recordings as they are.
