@@ -30,6 +30,7 @@ struct diagnosed_stroke {
   double force_sd_N = 0, velocity_sd_m_s = 0, delta = 0;  ///< in the middle of the take; Eq. (12)
   double level_sd_N = 0;                                  ///< of the mean force, where it was lost and is estimated
   std::optional<double> own_place{};                      ///< if that is not where the plucks were
+  double stretch = 0;                                     ///< by which its motion raises the tension, in the mean, relatively
   bool hold_out = false;                                  ///< never fitted, only predicted
 };
 
@@ -82,6 +83,8 @@ void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_dia
 [[nodiscard]] rosin::tension_drift drift_of(const std::vector<diagnosed_stroke>& strokes, const rosin::pluck_diagnosis& plucks);
 /// The mean force that AC-coupled sensors lost, as far as friction is usually known, put into what the strokes are examined with.
 void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, std::vector<diagnosed_stroke>& strokes);
+/// E A of a string that its motion stretches, as the plucks tell it; 0 where it is not stretched.
+[[nodiscard]] double axial_stiffness_of(const rosin::pluck_diagnosis& plucks);
 /// Nothing sits on the string and its ends are rigid, as far as plucks tell.
 [[nodiscard]] bool is_plain(const rosin::pluck_diagnosis& plucks);
 /// The contact as the rig file declares it.

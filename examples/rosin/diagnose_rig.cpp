@@ -160,13 +160,10 @@ void add_drift(const rosin::tension_drift& t, const std::vector<diagnosed_stroke
 /// A stroke stretches a string, too: a rise in tension up to twice that of the strongest pluck needs no other cause once E A is
 /// found.
 bool stretched_by_motion(const rosin::tension_drift& t, const rosin::pluck_diagnosis& p, const rosin::rig_values& values) {
-  const auto& effects = p.best.effects;
-  const auto found =
-      std::find_if(effects.begin(), effects.end(), [](const rosin::pluck_effect& e) { return e.name == "tension-modulation"; });
-  if (found == effects.end() || !(t.relative > 0) || !values.impedance_Ns_m || !values.length_m) return false;
-  const rosin::scene_plucks model(p.data.layout, p.data.guess.ac_coupled_Hz, effects);
+  const double axial_N = axial_stiffness_of(p);
+  if (!(axial_N > 0) || !(t.relative > 0) || !values.impedance_Ns_m || !values.length_m) return false;
+  const rosin::scene_plucks model(p.data.layout, p.data.guess.ac_coupled_Hz, p.best.effects);
   const double tension_N = values.impedance_Ns_m->value * 2 * values.length_m->value * p.best.value[0];
-  const double axial_N = p.best.value[model.first_of(static_cast<std::size_t>(found - effects.begin()))];
   double most = 0;
   for (std::size_t i = 0; i < p.data.takes.size(); ++i)
     most = std::max(most, rosin::mean_stretch(model.string(p.best.value), p.best.value[model.position(i)],

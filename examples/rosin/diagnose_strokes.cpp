@@ -4,6 +4,7 @@
 
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
+#include <rosin/diagnose/even_tension.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
 #include <rosin/diagnose/stroke_place.hpp>
 #include <rosin/reconstruct/dc_level.hpp>
@@ -51,6 +52,19 @@ diagnosed_stroke recorded_stroke(const rosin::take& take, const rosin::take_sign
   return s;
 }
 
+/// The tension of a string that its motion stretches is taken to its mean; returns the clock on which it stays there.
+std::optional<rosin::wave_clock> even_out(diagnosed_stroke& s, const rosin::pluck_diagnosis& plucks, double length_m) {
+  const double axial_N = axial_stiffness_of(plucks);
+  const auto& at = s.calibration.at;
+  if (!(axial_N > 0) || !(length_m > 0) || !is_plain(plucks)) return std::nullopt;
+  const double tension_N = at.impedance_Ns_m * length_m / (at.delay_s[0] + at.delay_s[1]);
+  const rosin::wave_clock clock(rosin::stretch_by_motion(s.force_N, at.delay_s, s.rate_Hz, tension_N, axial_N));
+  for (std::size_t c = 0; c < 2; ++c) s.recorded_N[c] = clock.even(s.recorded_N[c]), s.force_N[c] = clock.even(s.force_N[c]);
+  s.stretch = clock.mean_stretch();
+  s.calibration = rosin::at_tension(s.calibration, s.stretch);
+  return clock;
+}
+
 /// Of the calibrated channels.
 std::array<double, 2> noise_of(const rosin::calibration& c) { return {c.noise_N[0] / c.gain[0], c.noise_N[1] / c.gain[1]}; }
 
@@ -85,6 +99,15 @@ std::optional<double> own_place(const diagnosed_stroke& s, double declared, cons
 
 }  // namespace
 
+double axial_stiffness_of(const rosin::pluck_diagnosis& plucks) {
+  Eigen::Index at = plucks.data.layout.size();
+  for (const auto& e : plucks.best.effects) {
+    if (e.name == "tension-modulation") return plucks.best.value[at];
+    at += static_cast<Eigen::Index>(e.parameters.size());
+  }
+  return 0;
+}
+
 std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const rosin::rig_values& values,
                                                   const rosin::pluck_diagnosis& plucks, double tension_drift, provenance& from,
                                                   std::vector<std::string>& warnings, const std::string& only,
@@ -105,7 +128,9 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
     const rosin::calibration plucked = rosin::at_tension(calibration_with(plucks, *position, values), tension_drift);
     const auto made_at = [&](double place) {
       diagnosed_stroke s = recorded_stroke(take, read->signals, rosin::at_place(plucked, place), plucks, limits);
+      const auto clock = even_out(s, plucks, values.length_m ? values.length_m->value : 0);
       s.motion = motion_of(s, scene, limits);
+      if (clock) clock->read_back(s.motion);
       return s;
     };
     diagnosed_stroke s = made_at(plucked.position);
@@ -188,6 +213,7 @@ rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_strok
   t.rate_Hz = s.rate_Hz, t.rod_speed_m_s = s.speed_m_s, t.normal_force_N = s.normal_force_N;
   t.delay_s = s.calibration.at.delay_s, t.stiffness_s2 = s.calibration.at.stiffness_s2;
   t.loss = s.calibration.at.loss;
+  t.stretch = s.stretch;
   t.impedance_Ns_m = s.calibration.at.impedance_Ns_m, t.length_m = rig.string.length_m.value_or(0);
   t.noise_N = noise_of(s.calibration);
   t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.level_sd_N = s.level_sd_N, t.edge_Hz = 0.45 * s.rate_Hz;

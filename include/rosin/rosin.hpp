@@ -51,6 +51,7 @@
 #include <rosin/condition/low_pass.hpp>
 #include <rosin/condition/overlap_save.hpp>
 #include <rosin/condition/overlap_save_design.hpp>
+#include <rosin/condition/record_at.hpp>
 #include <rosin/condition/record_delay.hpp>
 
 #include <rosin/calibrate/band_kernels.hpp>
@@ -183,6 +184,7 @@
 #include <rosin/diagnose/contact_take.hpp>
 #include <rosin/diagnose/contact_width.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
+#include <rosin/diagnose/even_tension.hpp>
 #include <rosin/diagnose/friction_laws.hpp>
 #include <rosin/diagnose/hum_effect.hpp>
 #include <rosin/diagnose/isolability.hpp>

@@ -153,11 +153,25 @@ inline void approach_and_finish(const std::vector<pluck_take>& takes, const pluc
 /// Whether dispersion that was found may be loss that is causal, and not something else that disperses, or what was known before.
 inline bool is_causal(double causality, double sd) { return sd < 0.1 && causality > 0.2 && causality < 1.5; }
 
+/// Whether freeing the dispersion of the loss could leave so little: what a few steps from a fit that follows the whole record do.
+inline bool may_be_causal(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& freed,
+                          const pluck_fit_result& result) {
+  if (result.horizon_periods < horizon_periods.front()) return true;
+  const pluck_layout layout(takes, freed);
+  Eigen::VectorXd value = result.value;
+  pluck_problem problem(takes, {layout, guess.ac_coupled_Hz}, freed, guess, value, freed.most_partials, result.horizon_periods,
+                        true, result.noise_N);
+  int iterations = 0;
+  descend(problem, layout, result.value, value, 6, 1.0, iterations);
+  return problem.assess(value).misfit - 1 < (result.misfit - 1) / 2;
+}
+
 /// The same fit with loss that may disperse, where that follows more of the record, or as much and leaves a third of the excess.
 inline void try_causality(const std::vector<pluck_take>& takes, const pluck_guess& guess, pluck_options options,
                           const Eigen::VectorXd& begin, pluck_fit_result& result) {
   if (options.causality || !result.more_than_noise) return;
   options.causality = true;
+  if (!may_be_causal(takes, guess, options, result)) return;
   pluck_fit_result other;
   other.layout = pluck_layout(takes, options), other.limits = result.limits, other.value = begin;
   approach_and_finish(takes, guess, options, other);

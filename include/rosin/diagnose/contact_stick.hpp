@@ -24,8 +24,8 @@ public:
   [[nodiscard]] static std::vector<stick_take> stick_takes(const std::vector<contact_take>& takes) {
     std::vector<stick_take> out;
     for (const auto& t : takes)
-      out.push_back({t.force_N, t.velocity_m_s, t.rate_Hz, t.rod_speed_m_s, t.delay_s, t.impedance_Ns_m, t.velocity_sd_m_s,
-                     t.edge_Hz, t.start_s, t.approach});
+      out.push_back({t.force_N, t.velocity_m_s, t.rate_Hz, t.rod_speed_m_s, t.rest_delay_s(), t.rest_impedance_Ns_m(),
+                     t.velocity_sd_m_s, t.edge_Hz, t.start_s, t.approach});
     return out;
   }
 

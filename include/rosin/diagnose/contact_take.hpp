@@ -43,6 +43,14 @@ struct contact_take {
   double edge_Hz = 0;                            ///< where the reconstruction's band ends; 0: 0.45 of the rate
   double start_s = 0.03;                         ///< until the stroke is steady
   rod_approach approach{};                       ///< to that speed, where it is slower still
+  double stretch = 0;                            ///< by which the stroke itself raises the tension, relatively
+
+  /// At the tension at rest: torsion, which feels none, is declared relatively to these.
+  [[nodiscard]] std::array<double, 2> rest_delay_s() const noexcept {
+    const double slower = std::sqrt(1 + stretch);
+    return {delay_s[0] * slower, delay_s[1] * slower};
+  }
+  [[nodiscard]] double rest_impedance_Ns_m() const noexcept { return impedance_Ns_m / std::sqrt(1 + stretch); }
 };
 
 /// The velocity of the string's surface at the contact, as torsion under the force has it; where that is not known, of the centre.
@@ -52,7 +60,8 @@ struct contact_take {
   const auto is_known = [](double force_N) { return std::isfinite(force_N); };
   const auto begin = std::find_if(t.force_N.begin(), t.force_N.end(), is_known),
              end = std::find_if_not(begin, t.force_N.end(), is_known);
-  const auto guide = torsion_of(t.delay_s, t.impedance_Ns_m, torsion->speed_ratio, torsion->impedance_ratio, torsion->q);
+  const auto guide =
+      torsion_of(t.rest_delay_s(), t.rest_impedance_Ns_m(), torsion->speed_ratio, torsion->impedance_ratio, torsion->q);
   const auto rolling = torsion_velocity(guide, std::span(begin, end), t.rate_Hz);
   const auto first = static_cast<std::size_t>(begin - t.force_N.begin());
   for (std::size_t i = 0; i < rolling.size(); ++i) out[first + i] += rolling[i];

@@ -89,12 +89,13 @@ public:
 
 private:
   [[nodiscard]] torsion_pair rolling(double half_delay_s, const torsion_values& v, torsion_damping damping) const {
-    return {{(take_.delay_s[0] - half_delay_s) / v.speed_ratio, 2 * half_delay_s / v.speed_ratio,
-             (take_.delay_s[1] - half_delay_s) / v.speed_ratio},
-            take_.impedance_Ns_m * v.impedance_ratio,
+    const auto delay_s = take_.rest_delay_s();
+    return {{(delay_s[0] - half_delay_s) / v.speed_ratio, 2 * half_delay_s / v.speed_ratio,
+             (delay_s[1] - half_delay_s) / v.speed_ratio},
+            take_.rest_impedance_Ns_m() * v.impedance_ratio,
             v.q,
             damping,
-            torsion_modes::seen_below(edge_Hz_, (take_.delay_s[0] + take_.delay_s[1]) / v.speed_ratio)};
+            torsion_modes::seen_below(edge_Hz_, (delay_s[0] + delay_s[1]) / v.speed_ratio)};
   }
 
   /// Row r of a table: columns F_1, F_2 in 2 r, 2 r + 1.

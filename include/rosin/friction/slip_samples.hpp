@@ -81,15 +81,20 @@ public:
 
   /// Knots half-way between even steps and quantiles of x. Precondition: x is not empty. `functions` >= 4.
   explicit smooth_functions(std::vector<double> x, int functions = 11) : functions_{functions} {
-    std::sort(x.begin(), x.end());
+    const auto [least_x, most_x] = std::minmax_element(x.begin(), x.end());
+    const double low = *least_x, high = *most_x;
     const int inner = functions - order + 1;
-    for (int k = 0; k < order - 1; ++k) knots_.push_back(x.front());
+    for (int k = 0; k < order - 1; ++k) knots_.push_back(low);
+    auto from = x.begin();  // what lies before it is no larger than what follows
     for (int k = 0; k <= inner; ++k) {
-      const double share = static_cast<double>(k) / inner, even = x.front() + share * (x.back() - x.front());
-      knots_.push_back((even + x[static_cast<std::size_t>(static_cast<double>(x.size() - 1) * share)]) / 2);
+      const double share = static_cast<double>(k) / inner;
+      const auto quantile = x.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(x.size() - 1) * share);
+      std::nth_element(from, quantile, x.end());
+      from = quantile;
+      knots_.push_back((low + share * (high - low) + *quantile) / 2);
     }
-    for (int k = 0; k < order - 1; ++k) knots_.push_back(x.back());
-    const double least = std::max(1e-12, (x.back() - x.front()) * 1e-3);
+    for (int k = 0; k < order - 1; ++k) knots_.push_back(high);
+    const double least = std::max(1e-12, (high - low) * 1e-3);
     for (std::size_t k = order; k + order <= knots_.size(); ++k) knots_[k] = std::max(knots_[k], knots_[k - 1] + least);
     for (std::size_t k = knots_.size() - order + 1; k < knots_.size(); ++k) knots_[k] = knots_[knots_.size() - order];
   }

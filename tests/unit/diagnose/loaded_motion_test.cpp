@@ -1,46 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/diagnose/loaded_motion.hpp>
 
-#include <rosin/friction/friction_curves.hpp>
-#include <rosin/friction/velocity_curve.hpp>
-#include <rosin/simulate/burdened_take.hpp>
-#include <rosin/simulate/modal_decimator.hpp>
-
 #include <doctest/doctest.h>
+
+#include "support/burdened_stroke.hpp"
 
 namespace {
 
-constexpr double rate_Hz = 128000;
-constexpr int oversampling = 8;
 const rosin::modal_rig rig{
     {.length_m = 0.32, .tension_N = 70, .fundamental_Hz = 640, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}},
     {7, 3.5, 15}};
 
 /// rms difference of force and of velocity from the truth, relative; `scene` empty: as if the string were plain.
 std::array<double, 2> errors(const rosin::string_burden& burden, const rosin::pluck_scene& scene) {
-  constexpr double step = 1 / rate_Hz / oversampling, position = 0.3;
-  const rosin::velocity_curve<rosin::two_exponential_curve<double>> law{{0.38, 0.02, 0.42, 0.14, 0.35}};
-  const auto steps = rosin::step_stroke(rig, burden, law, rosin::steady_rod{.speed_m_s = 0.2, .normal_force_N = 0.3}, {},
-                                        position, 0, 0.06, 200e3, step);
-  const rosin::modal_decimator decimate{rosin::modal_settings{}.low_pass(), step, oversampling};
-  const rosin::band limits{18e3, 22e3};
-  const std::array<std::vector<double>, 2> ends{decimate.points(steps.end_N[0]), decimate.points(steps.end_N[1])};
-  const auto motion = rosin::reconstruct_loaded(scene, rosin::contact_at(rig.string, position), ends, limits, rate_Hz);
-  const auto kernel = rosin::shortest_fir([](double) { return 1.0; }, limits, rate_Hz, -300, 300, 1e-6);
-  const auto smooth = [&](const std::vector<double>& x, std::size_t i) {
-    double sum = 0;
-    for (int k = kernel.first; k <= kernel.last(); ++k)
-      sum += kernel.taps[static_cast<std::size_t>(k - kernel.first)] * x[i - static_cast<std::size_t>(k + 1000) + 1000];
-    return sum;
-  };
-  const auto force = decimate.points(steps.force_N), centre = decimate.points(steps.centre_m_s);
-  std::array<double, 2> off{}, all{};
-  for (std::size_t i = motion.known.begin + 1500; i + 1500 < motion.known.end; ++i) {
-    const double f = smooth(force, i), v = smooth(centre, i);
-    off[0] += std::pow(motion.force_N(i) - f, 2), all[0] += f * f;
-    off[1] += std::pow(motion.velocity_m_s(i) - v, 2), all[1] += v * v;
-  }
-  return {std::sqrt(off[0] / all[0]), std::sqrt(off[1] / all[1])};
+  const test::burdened_stroke bowed(rig, burden);
+  return bowed.errors_of(
+      rosin::reconstruct_loaded(scene, rosin::contact_at(rig.string, bowed.position), bowed.end_N, bowed.limits, bowed.rate_Hz));
 }
 
 }  // namespace
