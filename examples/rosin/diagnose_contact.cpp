@@ -263,7 +263,7 @@ bool examine_contact(const rosin::rig& rig, const std::vector<diagnosed_stroke>&
     found = ask(model);
     take_up_told();
     if (best.effect != "torsion") declared.torsion = model.torsion;
-    if (best.width_s > 0) since = found;
+    if (best.width_s > 0) since = round == 0 ? found : ask(rosin::include(declared, best));  // in whichever order they were found
     if (first == data_of(first)) add_after(traces_of(first, found), *d.contact);
     if (others == 0 && data_of(first) == d.metric && (first == d.metric || round > 0))
       d.after = left_in(d.metric, found), d.noise_floor = floor_in(d.metric, found);
