@@ -49,28 +49,26 @@ inline double likest_lag(const std::vector<double>& x, std::size_t begin, double
   return static_cast<double>(from - 1 + best) + vertex(value[best - 1], value[best], value[best + 1]);
 }
 
-/// Level before anything moves, and the instants (samples) at which the signal first leaves it and first crosses `level - drop`.
+/// The instant (in samples) at which a signal first falls by half of `drop` below what it was up to a quarter of a period before: a
+/// high-pass lets the force of a wire that still holds decay.
 struct first_step {
-  double level = 0, leaves = 0, crosses = 0;
+  double crosses = 0;
   bool found = false;
 };
-inline first_step find_step(const std::vector<double>& x, double drop, std::size_t lead) {
-  first_step step;
-  step.level = std::accumulate(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(lead), 0.0) / static_cast<double>(lead);
-  for (std::size_t i = lead; i < x.size(); ++i)
-    if (std::abs(x[i] - step.level) > 0.15 * drop) {
-      step.leaves = static_cast<double>(i);
-      break;
-    }
-  for (std::size_t i = lead; i + 1 < x.size(); ++i) {
-    const double a = step.level - x[i] - drop / 2, b = step.level - x[i + 1] - drop / 2;
-    if (a < 0 && b >= 0) {
-      step.crosses = static_cast<double>(i) + a / (a - b);
-      step.found = true;
-      return step;
-    }
+inline first_step find_step(const std::vector<double>& x, double drop, double period) {
+  const auto reach = std::max<std::size_t>(4, static_cast<std::size_t>(0.12 * period));
+  const auto mean_before = [&](std::size_t i) {  // of `reach` samples, as many before i
+    const auto from = x.begin() + static_cast<std::ptrdiff_t>(i > 2 * reach ? i - 2 * reach : 0);
+    return std::accumulate(from, from + static_cast<std::ptrdiff_t>(reach), 0.0) / static_cast<double>(reach);
+  };
+  if (x.size() < 3 * reach) return {};
+  double level = mean_before(reach);
+  for (std::size_t i = reach; i + 1 < x.size(); ++i) {
+    if (i > 2 * reach) level += (x[i - reach - 1] - x[i - 2 * reach - 1]) / static_cast<double>(reach);
+    const double a = level - x[i] - drop / 2, b = level - x[i + 1] - drop / 2;
+    if (a < 0 && b >= 0) return {static_cast<double>(i) + a / (a - b), true};
   }
-  return step;
+  return {};
 }
 
 }  // namespace detail
@@ -90,8 +88,7 @@ inline first_step find_step(const std::vector<double>& x, double drop, std::size
         if (!std::isfinite((*channel)[i]))
           return failure{take.name + ": " + (channel == &near ? "near" : "far") + ", sample " + std::to_string(i) +
                          " is not a number"};
-    const auto lead = static_cast<std::size_t>(std::max(4.0, 0.05 * period));
-    const auto one = detail::find_step(near, take.strength_N, lead), two = detail::find_step(far, take.strength_N, lead);
+    const auto one = detail::find_step(near, take.strength_N, period), two = detail::find_step(far, take.strength_N, period);
     if (!one.found || !two.found)
       return failure{take.name + ": no release found in channel " + (one.found ? "far" : "near") +
                      ": the force never falls by half of the declared " + std::to_string(take.strength_N) + " N"};

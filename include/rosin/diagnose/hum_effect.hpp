@@ -7,10 +7,12 @@
 //     gain of ln L = (n / 2) sum over channels of ln(power before / power after)  >  k / 2 + sqrt(k / 2),   k amplitudes.
 //
 // Lines near a partial of the string do not count in that, as a partial that is off would look like them, but go with the others.
+// Slow noise would give any lines more than white noise: it has to be clearly more than lines elsewhere take away.
 //
 #pragma once
 
 #include <rosin/diagnose/pluck_effect.hpp>
+#include <rosin/math/median.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +50,17 @@ inline lines_in_rest lines_at(const take_residual& rest, const std::vector<doubl
   return out;
 }
 
+/// Gain of lines that are no hum's over what white noise would give them, in the middle of several such sets: 1 if noise is white.
+inline double lines_elsewhere(const take_residual& rest, const std::vector<double>& frequencies_Hz) {
+  std::vector<double> gains;
+  for (const double by : {0.63, 0.71, 0.78, 0.84, 1.16, 1.23, 1.29, 1.37, 1.43}) {
+    std::vector<double> moved = frequencies_Hz;
+    for (double& f : moved) f *= by;
+    gains.push_back(lines_at(rest, moved).gain);
+  }
+  return std::max(1.0, median_of(gains) / (2 * static_cast<double>(frequencies_Hz.size())));
+}
+
 }  // namespace detail
 
 /// Parameters of a take, one multiple after the other: re and im of near, of far.
@@ -82,7 +95,10 @@ inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
     for (const double m : multiples) at.push_back(m * mains_Hz);
     counted.assign(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(counting));
     const double by_chance = 2 * static_cast<double>(counting);
-    if (!(detail::lines_at(rest, counted).gain > by_chance + std::sqrt(by_chance))) return {};
+    const double gain = detail::lines_at(rest, counted).gain;
+    if (!(gain > by_chance + std::sqrt(by_chance))) return {};
+    const double elsewhere = detail::lines_elsewhere(rest, counted);
+    if (elsewhere > 1.5 && !(gain > elsewhere * (by_chance + 4 * std::sqrt(by_chance)))) return {};
     const detail::lines_in_rest found = detail::lines_at(rest, at);
     std::vector<double> start = nothing;
     std::copy(found.parts_N.begin(), found.parts_N.end(), start.begin() + 1 + static_cast<std::ptrdiff_t>(rest.take * of_take));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/calibrate/pluck_start.hpp>
 
+#include <rosin/condition/ac_coupling.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -62,4 +64,15 @@ TEST_CASE("a position far from the declared one is held near it, for the fit to 
                                        {.fundamental_Hz = 640});
   REQUIRE(start);
   CHECK(start->position[0] == test::approx(0.41));
+}
+
+TEST_CASE("a force that a high-pass lets decay while the wire still holds is not taken for its release") {
+  for (const double corner_Hz : {4.0, 15.0}) {
+    rosin::pluck_take take = ideal(320, 0.2, 0.045);
+    for (auto& x : take.force_N) rosin::pass_ac_coupled(std::span(x), corner_Hz, start_rate_Hz);
+    const auto start = rosin::find_start({take}, {.fundamental_Hz = 321});
+    REQUIRE_MESSAGE(start, start.error());
+    CHECK(start->release_s[0] == test::approx(0.045).epsilon(2e-3));
+    CHECK(start->position[0] == test::approx(0.2).epsilon(0.02));
+  }
 }

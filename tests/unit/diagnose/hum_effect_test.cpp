@@ -57,6 +57,27 @@ TEST_CASE("hum: noise is not taken for it, nor another mains' frequency") {
   CHECK(rosin::hum_effect(hummed, 60).seek(humming(0.0015)).size() == 1);
 }
 
+TEST_CASE("hum: slow noise is not taken for it; above slow noise it is found") {
+  int taken = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    std::mt19937 random{seed};
+    std::normal_distribution<double> white{0, 0.005};
+    rosin::take_residual rest = humming(0);
+    for (auto& x : rest.residual) {
+      double slow = 0;  // below 300 Hz, of four times the white noise's amplitude there
+      for (Eigen::Index i = 0; i < x.size(); ++i) {
+        slow += 2 * std::numbers::pi * 300 / hum_rate_Hz * (4 * white(random) - slow);
+        x[i] = slow + white(random);
+      }
+    }
+    taken += rosin::hum_effect(hummed, 60).seek(rest).empty() ? 0 : 1;
+    const auto hum = humming(0.01);
+    for (std::size_t c = 0; c < 2; ++c) rest.residual[c] += hum.residual[c];
+    CHECK(rosin::hum_effect(hummed, 60).seek(rest).size() == 1);
+  }
+  CHECK(taken <= 2);
+}
+
 TEST_CASE("hum: no line near a partial of the string") {
   const auto hum = rosin::hum_effect({300.5, hum_rate_Hz, 9000, 0.2, 0.6, 1}, 60);  // five times 60 is the fundamental
   rosin::pluck_scene s;
