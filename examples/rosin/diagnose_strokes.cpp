@@ -24,7 +24,8 @@ rosin::calibration calibration_with(const rosin::pluck_diagnosis& p, double decl
   for (const auto& e : p.best.effects) {
     if (e.name == "bending-stiffness") v[rosin::pluck_layout::inharmonicity] += p.best.value[at];
     if (e.name == "frequency-dependent-loss") v[rosin::pluck_layout::internal_loss] += p.best.value[at];
-    if (e.name == "air-loss") v[rosin::pluck_layout::air_loss] += p.best.value[at];
+    if (e.name == "air-loss")
+      v[rosin::pluck_layout::air_loss] += p.best.value[at], v[rosin::pluck_layout::loss_drag] += p.best.value[at + 1];
     at += static_cast<Eigen::Index>(e.parameters.size());
   }
   fit.value = v;
@@ -97,6 +98,22 @@ std::optional<double> own_place(const diagnosed_stroke& s, double declared, cons
   return best.position;
 }
 
+/// How far the amplifiers' zeros were off in the plucks, together, rms; 0 where that is within five standard deviations of none.
+double zero_of_plucks_N(const rosin::pluck_diagnosis& plucks) {
+  using layout = rosin::pluck_layout;
+  const auto& fit = plucks.best;
+  const std::size_t takes = plucks.data.takes.size();
+  double power = 0, doubt = 0;
+  for (std::size_t t = 0; t < takes; ++t)
+    for (const auto& [offset, gain] :
+         {std::pair{layout::offset_near, layout::gain_near}, {layout::offset_far, layout::gain_far}}) {
+      const Eigen::Index at = plucks.data.layout.at(t, offset);
+      const double newtons = std::exp(-fit.value[gain]);
+      power += std::pow(newtons * fit.value[at], 2), doubt += std::pow(newtons * (at < fit.sd.size() ? fit.sd[at] : 0.0), 2);
+    }
+  return power > 25 * doubt ? std::sqrt(power / static_cast<double>(takes)) : 0;
+}
+
 }  // namespace
 
 double axial_stiffness_of(const rosin::pluck_diagnosis& plucks) {
@@ -155,7 +172,10 @@ std::vector<diagnosed_stroke> reconstruct_strokes(const rosin::rig& rig, const r
 
 void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, std::vector<diagnosed_stroke>& strokes) {
   const rosin::pluck_scene scene = rosin::scene_of(plucks.data, plucks.best);
-  if (!(scene.sensors[0].corner_Hz > 0) && !rig.channel("near")->ac_coupled_Hz && !rig.channel("far")->ac_coupled_Hz) return;
+  if (!(scene.sensors[0].corner_Hz > 0) && !rig.channel("near")->ac_coupled_Hz && !rig.channel("far")->ac_coupled_Hz) {
+    for (diagnosed_stroke& s : strokes) s.level_sd_N = zero_of_plucks_N(plucks);
+    return;
+  }
   for (diagnosed_stroke& s : strokes) {
     const auto dc = rosin::estimate_dc_level(s.mean_N, s.mean_m_s, s.speed_m_s, s.normal_force_N);
     if (!dc.available) continue;
@@ -217,6 +237,7 @@ rosin::contact_take contact_take_of(const rosin::rig& rig, const diagnosed_strok
   t.impedance_Ns_m = s.calibration.at.impedance_Ns_m, t.length_m = rig.string.length_m.value_or(0);
   t.noise_N = noise_of(s.calibration);
   t.force_sd_N = s.force_sd_N, t.velocity_sd_m_s = s.velocity_sd_m_s, t.level_sd_N = s.level_sd_N, t.edge_Hz = 0.45 * s.rate_Hz;
+  rosin::leave_out_silence(t);
   rosin::follow_start(t, declared_contact(rig).torsion);
   return t;
 }
@@ -233,9 +254,11 @@ std::vector<std::string> approaches_of(const rosin::rig& rig, const std::vector<
   std::vector<std::string> out;
   for (const auto& t : contact_takes(rig, strokes, plucks))
     if (t.approach.seen())
-      out.push_back(t.name + ": the rod is still gathering speed, or the string settling, at 0.03 s, " +
+      out.push_back(t.name + ": the rod is still gathering speed, or the string settling, " +
                     in_digits(1000 * t.approach.time_s, "%.2g") + " ms to an e-th: examined from " +
                     in_digits(t.start_s, "%.3f") + " s on");
+    else if (t.start_s > rosin::stick_take::usual_start_s)
+      out.push_back(t.name + ": hardly a force in the beginning: examined from " + in_digits(t.start_s, "%.3f") + " s on");
   return out;
 }
 

@@ -23,6 +23,8 @@ public:
     if (missing.empty()) missing = name;
     return 1;
   }
+  /// One that older diagnoses do not tell.
+  double if_told(const char* name) const { return effect_.parameters.contains(name) ? effect_.parameters.at(name) : 0; }
   /// 0 near, 1 far.
   std::size_t side(const std::string& place) {
     if (place != "near" && place != "far" && missing.empty()) missing = "end or channel";
@@ -86,7 +88,10 @@ const std::map<std::string, put>& can_be_put() {
   static const std::map<std::string, put> all{
       {"bending-stiffness", [](effect, get p, plan to) { to.rig.string.bending_stiffness_Nm2 += p("bending_stiffness_Nm2"); }},
       {"frequency-dependent-loss", [](effect, get p, plan to) { to.rig.string.loss.internal_s += p("loss_internal_s"); }},
-      {"air-loss", [](effect, get p, plan to) { to.rig.string.loss.air_sqrt_Hz += p("loss_air_sqrt_Hz"); }},
+      {"air-loss",
+       [](effect, get p, plan to) {
+         to.rig.string.loss.air_sqrt_Hz += p("loss_air_sqrt_Hz"), to.rig.string.loss.drag_Hz += p.if_told("loss_drag_Hz");
+       }},
       {"tension-modulation", [](effect, get p, plan to) { to.burden.string.axial_stiffness_N = p("axial_stiffness_N"); }},
       {"second-polarization",
        [](effect, get p, plan to) { to.burden.detuning = p("detuning"), to.burden.coupling = p("coupling"); }},

@@ -41,7 +41,7 @@ struct contact_take {
   std::array<double, 2> noise_N{};               ///< of one sample of near_N, far_N
   double level_sd_N = 0;                         ///< of the force's mean, where AC-coupled sensors lost it; 0: known
   double edge_Hz = 0;                            ///< where the reconstruction's band ends; 0: 0.45 of the rate
-  double start_s = 0.03;                         ///< until the stroke is steady
+  double start_s = stick_take::usual_start_s;    ///< until the stroke is steady
   rod_approach approach{};                       ///< to that speed, where it is slower still
   double stretch = 0;                            ///< by which the stroke itself raises the tension, relatively
 
@@ -66,6 +66,25 @@ struct contact_take {
   const auto first = static_cast<std::size_t>(begin - t.force_N.begin());
   for (std::size_t i = 0; i < rolling.size(); ++i) out[first + i] += rolling[i];
   return out;
+}
+
+/// A bow that is set on late, or taken off before the end: without the periods in which hardly a force is there at either end.
+inline void leave_out_silence(contact_take& t) {
+  constexpr double hardly = 0.2, sure = 40, least_periods = 3;  // of the force's rms; of its noise
+  double power = 0, count = 0;
+  for (const double f : t.force_N)
+    if (std::isfinite(f)) power += f * f, count += 1;
+  const double rms = count > 0 ? std::sqrt(power / count) : 0, period = 2 * (t.delay_s[0] + t.delay_s[1]) * t.rate_Hz;
+  if (!(rms > sure * t.force_sd_N)) return;
+  const auto acts = [&](double f) { return std::abs(f) > hardly * rms; };
+  const auto first = std::find_if(t.force_N.begin(), t.force_N.end(), acts);
+  const auto last = std::find_if(t.force_N.rbegin(), t.force_N.rend(), acts).base();
+  if (static_cast<double>(first - t.force_N.begin()) > least_periods * period)
+    t.start_s += static_cast<double>(first - t.force_N.begin()) / t.rate_Hz;
+  if (!(static_cast<double>(t.force_N.end() - last) > least_periods * period)) return;
+  const auto kept = static_cast<std::size_t>(last - t.force_N.begin());
+  for (auto* x : {&t.force_N, &t.velocity_m_s, &t.velocity_near_m_s, &t.velocity_far_m_s, &t.near_N, &t.far_N})
+    *x = x->first(std::min(kept, x->size()));
 }
 
 /// Finds how a stroke's rod approaches its speed, and until when too much of that is missing to count; nothing changes where the rod

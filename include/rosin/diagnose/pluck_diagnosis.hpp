@@ -44,6 +44,17 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
          tried.quality.inflation() - 1 < (found.quality.inflation() - 1) / 3;
 }
 
+/// What was found leaves so much that loss that disperses may have hidden what else there is: then the search begins anew with it.
+[[nodiscard]] inline bool is_far_off(const pluck_diagnosis& d, const scene_fit& found) {
+  constexpr double far_off = 30;
+  return !d.data.options.causality && !d.explained && found.quality.inflation() > far_off;
+}
+[[nodiscard]] inline bool is_due_to_causal_loss(const pluck_diagnosis& other, const scene_fit& without) {
+  constexpr double most_left = 1.0 / 9;
+  return other.explained && is_causal(other.best.value[pluck_layout::causality], other.best.sd[pluck_layout::causality]) &&
+         other.best.quality.inflation() - 1 < most_left * (without.quality.inflation() - 1);
+}
+
 /// Of recordings as they are.
 [[nodiscard]] inline outcome<pluck_diagnosis> diagnose_as_recorded(const std::vector<pluck_take>& takes,
                                                                    const std::vector<pluck_take>& held, const pluck_guess& guess,
@@ -69,9 +80,11 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   const auto& judged = held.empty() ? takes : held;
   const scene_fit found = d.best;
   judge(d, judged, noise, still.samples > 0, modulated);
-  if (leaves_causal_loss(d.data, found, {noise, noise})) {
+  const bool surely = leaves_causal_loss(d.data, found, {noise, noise});
+  if (surely || is_far_off(d, found)) {
     options.causality = true;
-    return diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects, least_temper);
+    auto other = diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects, least_temper);
+    if (surely || (other && is_due_to_causal_loss(*other, found))) return other;
   }
   if (d.mismatched) judge_ranking(d, judged, noise);
   if (!d.explained) d.mismatch.place = place_of_residual(d.data, d.best, d.mismatch.take);

@@ -46,12 +46,13 @@ inline pluck_effect internal_loss_effect(const string_facts&) {
           .apply = [](pluck_scene& s, const double* v, int) { s.string.loss.internal_s += v[0]; }};
 }
 
-/// 1/Q = 1/Q0 + loss / sqrt(f), the boundary layer's part.
-inline pluck_effect air_loss_effect(const string_facts&) {
-  return {.name = "air-loss",
-          .parameters = {{"loss_air_sqrt_Hz", 0, 1, 1e-6}},
-          .starts = {{1e-3}},
-          .apply = [](pluck_scene& s, const double* v, int) { s.string.loss.air_sqrt_Hz += v[0]; }};
+/// 1/Q = 1/Q0 + loss / sqrt(f) + drag / f: the boundary layer's part, and that of slow viscous flow, eta / m (Valette 1995).
+inline pluck_effect air_loss_effect(const string_facts& f) {
+  return {
+      .name = "air-loss",
+      .parameters = {{"loss_air_sqrt_Hz", 0, 1, 1e-6}, correction("loss_drag_Hz", 0, 0.01 * f.fundamental_Hz, 1e-5)},
+      .starts = {{1e-3, 0}},
+      .apply = [](pluck_scene& s, const double* v, int) { s.string.loss.air_sqrt_Hz += v[0], s.string.loss.drag_Hz += v[1]; }};
 }
 
 /// A second plane of vibration. Whether stiffness goes with its pitch depends on what detunes it: supports do not ask for it, a

@@ -38,11 +38,19 @@ struct pluck_diagnosis {
 
 namespace detail {
 
-/// What is real shows in takes that were not fitted, too.
+inline constexpr double to_the_last = 3e-4;  ///< of a pluck, rms: no law of loss, for one, is exact to less
+
+/// What is real shows in takes that were not fitted, too. Where the loss is causal, made by relaxations that nobody knows one by one,
+/// what is less than such a law may be off by is not real.
 inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<pluck_take>& held, double noise) {
   constexpr double beyond_doubt = 200, least = 3;
-  while (!held.empty() && !d.best.effects.empty() && d.found_gain[d.best.effects.size() - 1] < beyond_doubt &&
-         held_out_gain(d.data, d.best, held, noise) < least) {
+  const auto is_real = [&] {
+    const bool clear = d.found_gain[d.best.effects.size() - 1] >= beyond_doubt, by_loss = d.data.options.causality;
+    if (clear && !by_loss) return true;
+    const held_out_worth worth = held_out_gain(d.data, d.best, held, noise);
+    return (clear || worth.gain >= least) && !(by_loss && worth.taken < to_the_last);
+  };
+  while (!held.empty() && !d.best.effects.empty() && !is_real()) {
     const bool was_brief = d.best.effects.back().horizon_periods < 1e8;  // what is left holds for as long as was declared
     const scene_fit less = without(d.data, d.best, d.best.effects.size() - 1);
     const double horizon =
@@ -87,8 +95,8 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   const bool complete = !doubtful && !brief &&
                         ((left == 1.0 && !modulated && excess < most_left * d.floor) ||
                          excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
-  d.mismatched = d.mismatched || (left > 1.5 && !(known_ends && was <= 0.25 * d.floor)) || modulated || doubtful || brief ||
-                 was > 0.6 * d.floor;
+  d.mismatched = d.mismatched || (left > 1.5 && was > to_the_last && !(known_ends && was <= 0.25 * d.floor)) || modulated ||
+                 doubtful || brief || was > 0.6 * d.floor;
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   if (d.explained || excess <= 0.5 * was) return;
   d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it

@@ -185,17 +185,25 @@ inline seen_noise noise_before_release(const scene_data& data, const scene_fit& 
 
 [[nodiscard]] inline double rms_of(const std::array<double, 2>& x) { return std::sqrt((x[0] * x[0] + x[1] * x[1]) / 2); }
 
-/// By how much ln L of the takes in `held` is higher with the last effect of a fit than without it, misfit counted as noise.
-inline double held_out_gain(const scene_data& data, const scene_fit& fit, const std::vector<pluck_take>& held, double noise) {
+/// What the last effect of a fit is worth to takes that were not fitted: by how much ln L is higher, misfit counted as noise, and
+/// what it takes from the residual, rms relative to the recording's.
+struct held_out_worth {
+  double gain = 0, taken = 0;
+};
+inline held_out_worth held_out_gain(const scene_data& data, const scene_fit& fit, const std::vector<pluck_take>& held,
+                                    double noise) {
   scene_fit less = without(data, fit, fit.effects.size() - 1);
   less = fit_scene(data, less.effects, less.value, {{1000, fit.horizon_periods, true, data.compared()}}, {noise, noise});
   less.horizon_periods = fit.horizon_periods;
-  double gain = 0;
+  held_out_worth out;
+  double power = 0;
   for (const pluck_take& take : held) {
     const auto b = predicted(data, less, take, noise), a = predicted(data, fit, take, noise);
-    gain += 0.5 * a[2] * (b[0] * b[0] - a[0] * a[0]) / std::max(a[1] * a[1], a[0] * a[0]);
+    out.gain += 0.5 * a[2] * (b[0] * b[0] - a[0] * a[0]) / std::max(a[1] * a[1], a[0] * a[0]);
+    power += (b[0] * b[0] - a[0] * a[0]) / static_cast<double>(held.size());
   }
-  return gain;
+  out.taken = std::sqrt(std::max(0.0, power));
+  return out;
 }
 
 }  // namespace detail

@@ -168,10 +168,11 @@ private:
   /// What the poles depend on.
   [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v, const pluck_scene& s) const {
     const Eigen::Index more = v.size() - first_of_ends();
-    Eigen::VectorXd k(gain_near + more + 1);
-    k << v.head(gain_near), v.tail(more), s.string.fundamental_Hz;
-    // logarithms about 0: how near a string is tells by their size
-    k.segment(gain_near, plain_size() - first_of_ends()).array() += 1;
+    constexpr Eigen::Index of_loss = loss_drag + 1 - causality;
+    Eigen::VectorXd k(gain_near + of_loss + more + 1);
+    k << v.head(gain_near), v.segment<of_loss>(causality), v.tail(more), s.string.fundamental_Hz;
+    // what may be about 0: how near a string is tells by their size
+    k.segment(gain_near, of_loss + plain_size() - first_of_ends()).array() += 1;
     return k;
   }
 

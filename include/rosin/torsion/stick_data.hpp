@@ -20,6 +20,8 @@ namespace rosin {
 
 /// One reconstructed stroke. Samples that are not numbers may stand at both ends only.
 struct stick_take {
+  static constexpr double usual_start_s = 0.03;
+
   std::span<const double> force_N, velocity_m_s;  ///< at the contact; velocity of the string's centre
   double rate_Hz = 0;
   double rod_speed_m_s = 0;         ///< of the steady stroke, with its sign
@@ -27,8 +29,9 @@ struct stick_take {
   double impedance_Ns_m = 0;        ///< transverse
   double velocity_sd_m_s = 0;       ///< noise of the reconstruction
   double edge_Hz = 0;               ///< where the reconstruction's band ends; 0: 0.45 of the rate
-  double start_s = 0.03;            ///< left out at the beginning, a quarter of the record at most (half where the rod lags)
-  rod_approach approach{};          ///< to the rod's speed
+  /// left out at the beginning, a quarter of the record at most (half where that is longer than usual, or the rod lags)
+  double start_s = usual_start_s;
+  rod_approach approach{};  ///< to the rod's speed
 
   /// Through which it is seen while it sticks.
   [[nodiscard]] smooth_window window() const noexcept { return {edge_Hz > 0 ? edge_Hz : 0.45 * rate_Hz}; }
@@ -85,7 +88,8 @@ public:
 
   /// Known samples that count: all but the start and a reach of the window at the end.
   [[nodiscard]] std::size_t begin() const noexcept {
-    return std::min(relative_.size() / (take_.approach.seen() ? 2 : 4), static_cast<std::size_t>(take_.start_s * take_.rate_Hz));
+    const bool late = take_.approach.seen() || take_.start_s > stick_take::usual_start_s;
+    return std::min(relative_.size() / (late ? 2 : 4), static_cast<std::size_t>(take_.start_s * take_.rate_Hz));
   }
   [[nodiscard]] std::size_t end() const noexcept { return relative_.size() - std::min(relative_.size(), reach()); }
   /// Index in the take's own arrays of the first known sample.

@@ -49,6 +49,47 @@ TEST_CASE("contact take: what sticks is the surface, whatever the centre does me
   CHECK(std::equal(as_it_was.begin(), as_it_was.end(), centre.begin()));
 }
 
+TEST_CASE("contact take: a bow that is set on late and taken off early is examined in between") {
+  constexpr double rate = 96e3;
+  const auto take_with = [&](std::size_t on, std::size_t off, std::vector<double>& force) {
+    force.assign(30000, 0.0);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      force[i] = 1e-3 * std::sin(0.1 * static_cast<double>(i * i % 1000));
+      if (i >= on && i < off) force[i] += 0.3 + 0.1 * std::fmod(static_cast<double>(i) / 200, 1.0);
+    }
+    force.front() = force.back() = std::nan("");
+    rosin::contact_take t{.force_N = force, .velocity_m_s = force, .rate_Hz = rate, .delay_s = {0.2e-3, 0.8e-3}};
+    t.force_sd_N = 1e-3;
+    rosin::leave_out_silence(t);
+    return t;
+  };
+  std::vector<double> force;
+  const auto whole = take_with(1, 29999, force);
+  CHECK(whole.start_s == rosin::stick_take::usual_start_s);
+  CHECK(whole.force_N.size() == 30000);
+  const auto late = take_with(4800, 29999, force);
+  CHECK(late.start_s == test::approx(rosin::stick_take::usual_start_s + 0.05).epsilon(1e-3));
+  CHECK(late.force_N.size() == 30000);
+  const auto brief = take_with(100, 20000, force);
+  CHECK(brief.start_s == rosin::stick_take::usual_start_s);
+  CHECK(brief.force_N.size() == 20000);
+  CHECK(brief.velocity_m_s.size() == 20000);
+  CHECK(brief.near_N.empty());
+  auto silent = late;
+  silent.start_s = rosin::stick_take::usual_start_s, silent.force_sd_N = 1;
+  rosin::leave_out_silence(silent);  // all noise: nothing is told
+  CHECK(silent.start_s == rosin::stick_take::usual_start_s);
+}
+
+TEST_CASE("contact take: torsion is declared relatively to the string at rest, whatever stretches it") {
+  rosin::contact_take t{.delay_s = {0.2e-3, 0.8e-3}, .impedance_Ns_m = 0.2};
+  CHECK(t.rest_delay_s()[1] == 0.8e-3);
+  t.stretch = 0.02;
+  CHECK(t.rest_delay_s()[1] / t.rest_delay_s()[0] == test::approx(4));
+  CHECK(t.rest_delay_s()[0] == test::approx(0.2e-3 * std::sqrt(1.02)));
+  CHECK(t.rest_impedance_Ns_m() * t.rest_delay_s()[0] == test::approx(0.2 * 0.2e-3));
+}
+
 TEST_CASE("contact take: intervals, and evidence that counts parameters") {
   const rosin::contact_parameter p{"q", 10, 2};
   CHECK(p.ci95()[0] == test::approx(10 - 3.92));

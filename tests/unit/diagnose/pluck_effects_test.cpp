@@ -95,3 +95,14 @@ TEST_CASE("a support that lags still moves in phase with the force at its freque
   support.apply(scene, fast_and_dull, 0);
   CHECK(std::isfinite(std::abs(scene.ends[0].admittance({0, 3e5}))));
 }
+
+TEST_CASE("air takes in its boundary layer, and by its drag as well") {
+  const auto e = rosin::air_loss_effect({.fundamental_Hz = 400});
+  REQUIRE(e.parameters.size() == 2);
+  CHECK(e.parameters[1].late);
+  rosin::pluck_scene s;
+  s.string.loss = {.quality = 1000};
+  const std::array values{0.02, 0.04};
+  e.apply(s, values.data(), 0);
+  CHECK(s.string.loss.inverse_q(400) == test::approx(1e-3 + 0.02 / 20 + 0.04 / 400));
+}
