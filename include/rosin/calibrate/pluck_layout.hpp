@@ -117,7 +117,7 @@ public:
   [[nodiscard]] bool is_free(Eigen::Index p) const {
     return (p != inharmonicity || options_.stiffness) && (p != internal_loss || options_.internal_loss || options_.causality) &&
            (p != air_loss || options_.air_loss) && (p != convention || options_.convention) &&
-           ((p != causality && p != loss_drag) || options_.causality);
+           (p != causality || options_.causality) && (p != loss_drag || options_.causality || options_.air_loss);
   }
   /// Gains and strengths: only their products show.
   [[nodiscard]] bool is_scale(Eigen::Index p) const {

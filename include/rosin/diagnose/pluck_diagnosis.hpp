@@ -47,7 +47,7 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
 /// What was found leaves so much that loss that disperses may have hidden what else there is: then the search begins anew with it.
 [[nodiscard]] inline bool is_far_off(const pluck_diagnosis& d, const scene_fit& found) {
   constexpr double far_off = 30;
-  return !d.data.options.causality && !d.explained && found.quality.inflation() > far_off;
+  return !d.data.options.causality && found.quality.inflation() > far_off;
 }
 [[nodiscard]] inline bool is_due_to_causal_loss(const pluck_diagnosis& other, const scene_fit& without) {
   constexpr double most_left = 1.0 / 9;

@@ -38,7 +38,8 @@ struct pluck_diagnosis {
 
 namespace detail {
 
-inline constexpr double to_the_last = 3e-4;  ///< of a pluck, rms: no law of loss, for one, is exact to less
+/// Of a pluck, rms: no law of loss, for one, is exact to less. Relaxations that make it causal leave it flat within a hundredth.
+[[nodiscard]] inline double least_told(const scene_data& data) { return data.options.causality ? 6e-4 : 3e-4; }
 
 /// What is real shows in takes that were not fitted, too. Where the loss is causal, made by relaxations that nobody knows one by one,
 /// what is less than such a law may be off by is not real.
@@ -48,7 +49,7 @@ inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<plu
     const bool clear = d.found_gain[d.best.effects.size() - 1] >= beyond_doubt, by_loss = d.data.options.causality;
     if (clear && !by_loss) return true;
     const held_out_worth worth = held_out_gain(d.data, d.best, held, noise);
-    return (clear || worth.gain >= least) && !(by_loss && worth.taken < to_the_last);
+    return (clear || worth.gain >= least) && !(by_loss && worth.taken < least_told(d.data));
   };
   while (!held.empty() && !d.best.effects.empty() && !is_real()) {
     const bool was_brief = d.best.effects.back().horizon_periods < 1e8;  // what is left holds for as long as was declared
@@ -95,8 +96,9 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   const bool complete = !doubtful && !brief &&
                         ((left == 1.0 && !modulated && excess < most_left * d.floor) ||
                          excess < std::max(0.25 * d.floor, std::min(0.12 * was, most_left * d.floor)));
-  d.mismatched = d.mismatched || (left > 1.5 && was > to_the_last && !(known_ends && was <= 0.25 * d.floor)) || modulated ||
-                 doubtful || brief || was > 0.6 * d.floor;
+  d.mismatched = d.mismatched || (left > 1.5 && was > least_told(d.data) && !(known_ends && was <= 0.25 * d.floor)) ||
+                 modulated || doubtful || brief ||
+                 was > std::max(0.6 * d.floor, d.data.options.causality ? least_told(d.data) : 0.0);
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   if (d.explained || excess <= 0.5 * was) return;
   d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it
