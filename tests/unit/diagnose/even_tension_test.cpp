@@ -16,7 +16,7 @@ namespace {
 
 using test::burdened_stroke;
 
-const rosin::modal_rig rig{
+const rosin::modal_rig stretchy{
     {.length_m = 0.32, .tension_N = 50, .fundamental_Hz = 500, .bending_stiffness_Nm2 = 4e-5, .loss = {.quality = 1000}},
     {7, 3.5, 15}};
 
@@ -46,14 +46,14 @@ TEST_CASE("the stretch of a string in Helmholtz motion is that of the two straig
 
 TEST_CASE("a stretched stroke is reconstructed on the clock of its waves as well as a steady one") {
   constexpr double axial_N = 15e3, speed_m_s = 0.3;
-  const auto at = rosin::contact_at(rig.string, burdened_stroke::position);
+  const auto at = rosin::contact_at(stretchy.string, burdened_stroke::position);
   const auto reconstruct = [&](const rosin::bow_point& point, const auto& force_N) {
     return rosin::reconstructor<double>(point, burdened_stroke::limits, burdened_stroke::rate_Hz)(force_N[0], force_N[1]);
   };
-  const burdened_stroke steady(rig, {}, speed_m_s), bowed(rig, {.axial_stiffness_N = axial_N}, speed_m_s);
+  const burdened_stroke steady(stretchy, {}, speed_m_s), bowed(stretchy, {.axial_stiffness_N = axial_N}, speed_m_s);
   const auto reference = steady.errors_of(reconstruct(at, steady.end_N));
 
-  const auto e = rosin::stretch_by_motion(bowed.end_N, at.delay_s, burdened_stroke::rate_Hz, rig.string.tension_N, axial_N);
+  const auto e = rosin::stretch_by_motion(bowed.end_N, at.delay_s, burdened_stroke::rate_Hz, stretchy.string.tension_N, axial_N);
   const rosin::wave_clock clock(e);
   auto tuned = at;
   rosin::detail::tighten(tuned, clock.mean_stretch());
