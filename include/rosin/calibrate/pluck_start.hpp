@@ -49,24 +49,28 @@ inline double likest_lag(const std::vector<double>& x, std::size_t begin, double
   return static_cast<double>(from - 1 + best) + vertex(value[best - 1], value[best], value[best + 1]);
 }
 
-/// The instant (in samples) at which a signal first falls by half of `drop` below what it was up to a quarter of a period before: a
-/// high-pass lets the force of a wire that still holds decay.
+/// The instant (in samples) at which a signal first falls by half of `drop` below its level in the beginning; or, where it has come
+/// down slowly until then, as a high-pass lets the force of a wire that still holds, below what it was a little before.
 struct first_step {
   double crosses = 0;
   bool found = false;
 };
 inline first_step find_step(const std::vector<double>& x, double drop, double period) {
   const auto reach = std::max<std::size_t>(4, static_cast<std::size_t>(0.12 * period));
-  const auto mean_before = [&](std::size_t i) {  // of `reach` samples, as many before i
-    const auto from = x.begin() + static_cast<std::ptrdiff_t>(i > 2 * reach ? i - 2 * reach : 0);
-    return std::accumulate(from, from + static_cast<std::ptrdiff_t>(reach), 0.0) / static_cast<double>(reach);
-  };
   if (x.size() < 3 * reach) return {};
-  double level = mean_before(reach);
+  const auto mean_of = [&](std::size_t from) {
+    const auto first = x.begin() + static_cast<std::ptrdiff_t>(from);
+    return std::accumulate(first, first + static_cast<std::ptrdiff_t>(reach), 0.0) / static_cast<double>(reach);
+  };
+  const double in_the_beginning = mean_of(0);
+  double before = in_the_beginning;  // mean of `reach` samples, as many before this one
+  bool slowly = false;
   for (std::size_t i = reach; i + 1 < x.size(); ++i) {
-    if (i > 2 * reach) level += (x[i - reach - 1] - x[i - 2 * reach - 1]) / static_cast<double>(reach);
-    const double a = level - x[i] - drop / 2, b = level - x[i + 1] - drop / 2;
-    if (a < 0 && b >= 0) return {static_cast<double>(i) + a / (a - b), true};
+    if (i > 2 * reach) before += (x[i - reach - 1] - x[i - 2 * reach - 1]) / static_cast<double>(reach);
+    const double level = slowly ? before : in_the_beginning, a = level - x[i] - drop / 2, b = level - x[i + 1] - drop / 2;
+    if (!(a < 0 && b >= 0)) continue;
+    slowly = slowly || before < in_the_beginning - drop / 4;
+    if (before - x[i + 1] >= drop / 4) return {static_cast<double>(i) + a / (a - b), true};
   }
   return {};
 }
