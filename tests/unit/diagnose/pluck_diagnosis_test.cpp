@@ -299,7 +299,8 @@ TEST_CASE("three that hide each other: neither of the last two takes away enough
           return e.name != "second-polarization" && e.name != "air-loss" && e.id() != "sensor-nonlinearity@far";
         });
         for (auto& e : all)  // a scan over detunings is what takes long
-          std::erase_if(e.starts, [](const auto& start) { return start.size() == 2 && std::abs(start[0] + 1.2e-3) > 2e-4; });
+          if (e.name == "second-polarization")
+            std::erase_if(e.starts, [](const auto& start) { return std::abs(start[0] + 1.2e-3) > 2e-4; });
         return all;
       });
   REQUIRE_MESSAGE(d, d.error());
