@@ -129,7 +129,8 @@ rosin::outcome<processed> process_with_model(const corrected_model& model, const
   std::vector<std::string> said;
   const auto values = rosin::values_of(rig);
   auto strokes = reconstruct_strokes(rig, values, *model.plucks, model.tension_drift, own, said, take, limits);
-  // A string that motion stretches is tighter under the bow than the plucks' mean: by as much as the force's two versions say.
+  // A string that motion stretches is tighter under the bow than at rest. Where it carries something, or its ends move, that is known
+  // in the mean only: by as much as the force's two versions say.
   const bool stretches = std::find(model.effects.begin(), model.effects.end(), "tension-modulation") != model.effects.end();
   if (const auto drift =
           stretches && model.tension_drift == 0 && !strokes.empty() ? drift_of(strokes, *model.plucks) : rosin::tension_drift{};

@@ -89,7 +89,7 @@ void add_lost_levels(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks
 [[nodiscard]] bool is_plain(const rosin::pluck_diagnosis& plucks);
 /// The contact as the rig file declares it.
 [[nodiscard]] rosin::contact_model declared_contact(const rosin::rig& rig);
-/// What is said of rods that are still gathering speed.
+/// What is said of rods that are still gathering speed, and of bows that are set on late or taken off early.
 [[nodiscard]] std::vector<std::string> approaches_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
                                                      const rosin::pluck_diagnosis& plucks);
 [[nodiscard]] rosin::contact_findings contact_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,

@@ -252,13 +252,18 @@ std::vector<rosin::contact_take> contact_takes(const rosin::rig& rig, const std:
 std::vector<std::string> approaches_of(const rosin::rig& rig, const std::vector<diagnosed_stroke>& strokes,
                                        const rosin::pluck_diagnosis& plucks) {
   std::vector<std::string> out;
-  for (const auto& t : contact_takes(rig, strokes, plucks))
+  for (const diagnosed_stroke& s : strokes) {
+    const rosin::contact_take t = contact_take_of(rig, s, plucks);
     if (t.approach.seen())
       out.push_back(t.name + ": the rod is still gathering speed, or the string settling, " +
                     in_digits(1000 * t.approach.time_s, "%.2g") + " ms to an e-th: examined from " +
                     in_digits(t.start_s, "%.3f") + " s on");
     else if (t.start_s > rosin::stick_take::usual_start_s)
       out.push_back(t.name + ": hardly a force in the beginning: examined from " + in_digits(t.start_s, "%.3f") + " s on");
+    if (t.force_N.size() < s.mean_N.size())
+      out.push_back(t.name + ": hardly a force in the end: examined to " +
+                    in_digits(static_cast<double>(t.force_N.size()) / t.rate_Hz, "%.3f") + " s");
+  }
   return out;
 }
 
