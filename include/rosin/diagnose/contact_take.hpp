@@ -70,13 +70,14 @@ struct contact_take {
 
 /// A bow that is set on late, or taken off before the end: without the periods in which hardly a force is there at either end.
 inline void leave_out_silence(contact_take& t) {
-  constexpr double hardly = 0.2, sure = 40, least_periods = 3;  // of the force's rms; of its noise
+  constexpr double hardly = 0.2, surely = 6, sure = 12, least_periods = 3;  // of the force's rms; of its noise
   double power = 0, count = 0;
   for (const double f : t.force_N)
     if (std::isfinite(f)) power += f * f, count += 1;
   const double rms = count > 0 ? std::sqrt(power / count) : 0, period = 2 * (t.delay_s[0] + t.delay_s[1]) * t.rate_Hz;
   if (!(rms > sure * t.force_sd_N)) return;
-  const auto acts = [&](double f) { return std::abs(f) > hardly * rms; };
+  const double least_N = std::max(hardly * rms, surely * t.force_sd_N);
+  const auto acts = [&](double f) { return std::abs(f) > least_N; };
   const auto first = std::find_if(t.force_N.begin(), t.force_N.end(), acts);
   const auto last = std::find_if(t.force_N.rbegin(), t.force_N.rend(), acts).base();
   if (static_cast<double>(first - t.force_N.begin()) > least_periods * period)

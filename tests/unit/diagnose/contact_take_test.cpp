@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/diagnose/contact_take.hpp>
 
+#include <random>
+
 #include <doctest/doctest.h>
 
 #include "support/approx.hpp"
@@ -51,15 +53,17 @@ TEST_CASE("contact take: what sticks is the surface, whatever the centre does me
 
 TEST_CASE("contact take: a bow that is set on late and taken off early is examined in between") {
   constexpr double rate = 96e3;
-  const auto take_with = [&](std::size_t on, std::size_t off, std::vector<double>& force) {
+  const auto take_with = [&](std::size_t on, std::size_t off, std::vector<double>& force, double noise_N = 1e-3) {
+    std::mt19937 random(1);
+    std::normal_distribution<> noise(0, noise_N);
     force.assign(30000, 0.0);
     for (std::size_t i = 0; i < force.size(); ++i) {
-      force[i] = 1e-3 * std::sin(0.1 * static_cast<double>(i * i % 1000));
+      force[i] = noise(random);
       if (i >= on && i < off) force[i] += 0.3 + 0.1 * std::fmod(static_cast<double>(i) / 200, 1.0);
     }
     force.front() = force.back() = std::nan("");
     rosin::contact_take t{.force_N = force, .velocity_m_s = force, .rate_Hz = rate, .delay_s = {0.2e-3, 0.8e-3}};
-    t.force_sd_N = 1e-3;
+    t.force_sd_N = noise_N;
     rosin::leave_out_silence(t);
     return t;
   };
@@ -75,6 +79,9 @@ TEST_CASE("contact take: a bow that is set on late and taken off early is examin
   CHECK(brief.force_N.size() == 20000);
   CHECK(brief.velocity_m_s.size() == 20000);
   CHECK(brief.near_N.empty());
+  const auto noisy = take_with(4800, 20000, force, 0.015);
+  CHECK(noisy.start_s == test::approx(rosin::stick_take::usual_start_s + 0.05).epsilon(1e-3));
+  CHECK(noisy.force_N.size() == 20000);
   auto silent = late;
   silent.start_s = rosin::stick_take::usual_start_s, silent.force_sd_N = 1;
   rosin::leave_out_silence(silent);  // all noise: nothing is told
