@@ -84,9 +84,44 @@ struct tone_sums {
   return sum;
 }
 
-}  // namespace detail
+/// explained_at(takes, f) for f = from, from + step, ...: every row turns on by an angle of its own.
+class tone_scan {
+public:
+  tone_scan(const std::vector<tone_rows>& takes, double from_Hz, double step_Hz) {
+    for (const auto& t : takes) {
+      const auto n = static_cast<Eigen::Index>(t.sample.size());
+      Eigen::ArrayXd time(n);
+      for (Eigen::Index i = 0; i < n; ++i)
+        time[i] = 2 * std::numbers::pi * static_cast<double>(t.sample[static_cast<std::size_t>(i)]) / t.rate_Hz;
+      const Eigen::ArrayXd c = t.weight.array() * t.carrier.array();
+      parts_.push_back({c * (from_Hz * time).sin(), c * (from_Hz * time).cos(), (step_Hz * time).sin(), (step_Hz * time).cos(),
+                        t.weight.array() * t.residual.array()});
+    }
+  }
 
-namespace detail {
+  /// At the frequency it stands at; then goes on to the next.
+  [[nodiscard]] double next() {
+    double sum = 0;
+    for (auto& p : parts_) {
+      tone_sums s;
+      for (Eigen::Index i = 0; i < p.sine.size(); ++i) {
+        const double x = p.sine[i], y = p.cosine[i], v = p.value[i];
+        s.ss += x * x, s.sc += x * y, s.cc += y * y, s.sr += x * v, s.cr += y * v;
+        p.sine[i] = x * p.turn_cosine[i] + y * p.turn_sine[i];
+        p.cosine[i] = y * p.turn_cosine[i] - x * p.turn_sine[i];
+      }
+      const auto a = s.solve();
+      sum += a.real() * s.sr + a.imag() * s.cr;
+    }
+    return sum;
+  }
+
+private:
+  struct part {
+    Eigen::ArrayXd sine, cosine, turn_sine, turn_cosine, value;
+  };
+  std::vector<part> parts_;
+};
 
 /// Neighbours put together, as far apart as a tone hardly moves on between them: the same sums from fewer rows.
 [[nodiscard]] inline tone_rows gathered(const tone_rows& r, double within_s) {
@@ -125,15 +160,15 @@ namespace detail {
   if (!(length > 0)) return best;
   const double step = 0.25 / length, lowest_Hz = 2 / length;
   const auto allowed = [&](double f) { return f >= lowest_Hz && f < band.highest_Hz && !band.is_its_own(f, 3 / length); };
-  const auto attempt = [&](const std::vector<tone_rows>& rows, double f) {
-    if (!allowed(f)) return;
-    if (const double e = detail::explained_at(rows, f); e > best.explained) best.explained = e, best.frequency_Hz = f;
+  const auto attempt = [&](double f, double explained) {
+    if (allowed(f) && explained > best.explained) best.explained = explained, best.frequency_Hz = f;
   };
-  for (double f = lowest_Hz; f < band.highest_Hz; f += step) attempt(coarse, f);
+  detail::tone_scan scan(coarse, lowest_Hz, step);
+  for (double f = lowest_Hz; f < band.highest_Hz; f += step) attempt(f, scan.next());
   if (!(best.explained > 0)) return best;
   best.explained = detail::explained_at(takes, best.frequency_Hz);
   for (double width = step / 2; width > step / 500; width /= 2)
-    for (const double f : {best.frequency_Hz - width, best.frequency_Hz + width}) attempt(takes, f);
+    for (const double f : {best.frequency_Hz - width, best.frequency_Hz + width}) attempt(f, detail::explained_at(takes, f));
   double weights = 0, sum = 0;
   for (const auto& t : takes) {
     const auto s = detail::sums_at(t, best.frequency_Hz, 0, t.sample.size());

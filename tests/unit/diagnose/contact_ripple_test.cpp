@@ -41,6 +41,15 @@ TEST_CASE("ripple: a tone in patches, its frequency and size, and that it lasts"
   CHECK(rosin::tone_prediction(takes, tone.frequency_Hz) > 0.7 * tone.explained);
 }
 
+TEST_CASE("ripple: a scan explains at each step what its frequency alone does") {
+  const std::vector<rosin::tone_rows> takes{patches(0.03, 97.3, 0.1, 1), patches(0.01, 97.3, 0.1, 2)};
+  rosin::detail::tone_scan scan(takes, 20, 0.37);
+  for (int k = 0; k < 1000; ++k) {
+    const double here = scan.next();
+    if (k % 111 == 0) CHECK(here == test::approx(rosin::detail::explained_at(takes, 20 + 0.37 * k)).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("ripple: the strongest frequency of noise that is not white does not stand out, a tone in it does") {
   int named = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
