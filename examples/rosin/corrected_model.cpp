@@ -60,6 +60,14 @@ void keep_calibrated(const json& calibration, plucks_to_diagnose& plucks) {
   std::erase_if(plucks.takes, [&](const rosin::pluck_take& t) { return !calibration.contains("release_s of " + t.name); });
 }
 
+/// With what the diagnosis had to free besides (loosened_plucks.hpp).
+void loosen(const json& calibration, plucks_to_diagnose& plucks) {
+  auto& options = plucks.options;
+  const std::size_t places = rosin::pluck_layout(plucks.takes, options).positions().size(), takes = plucks.takes.size();
+  options.uneven_loss = calibration.contains("loss_cosine_1");
+  options.own_places = takes > places && calibration.contains("position " + std::to_string(takes));
+}
+
 }  // namespace
 
 rosin::outcome<corrected_model> read_model(const std::string& path, const rosin::rig& rig, provenance& from) {
@@ -77,6 +85,7 @@ rosin::outcome<corrected_model> read_model(const std::string& path, const rosin:
   const json& calibration = document["calibration"];
   if (!calibration.contains("fundamental_Hz")) return wrong("calibration has no \"fundamental_Hz\"");
   keep_calibrated(calibration, *plucks);
+  loosen(calibration, *plucks);
   if (plucks->takes.empty()) return wrong("calibration has none of the plucks that " + rig.file + " names");
   corrected_model out{path, {}, 0, 0, {}, {}, from, {}};
   const rosin::pluck_layout layout(plucks->takes, plucks->options, plucks->guess.ends);

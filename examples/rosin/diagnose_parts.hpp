@@ -64,6 +64,8 @@ bool add_odd(const rosin::odd_pluck& odd, const rosin::rig_values& values, const
 void name_dropouts(const rosin::rig& rig, const rosin::pluck_diagnosis& plucks, provenance& from, rig_diagnosis& d);
 /// How far from its declared place (fraction of the length) a pluck may be found without a word.
 [[nodiscard]] double tolerated_offset(const rosin::rig_values& values);
+/// What had to be taken for granted of the plucks besides what the rig file declares.
+void assume_of_plucks(const rosin::pluck_diagnosis& plucks, rig_diagnosis& d);
 /// Plucks that were made clearly elsewhere than declared.
 void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_diagnosis& plucks, rig_diagnosis& d);
 

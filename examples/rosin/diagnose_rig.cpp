@@ -244,12 +244,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
   if (!plucks) return rosin::failure{plucks.error()};
   const rosin::pluck_diagnosis& p = plucks->sound();
   take_over(p, values, d);
-  if (p.slow_noise > 0)
-    d.assumed.push_back("the plucks' noise is slow, at the pitch " + in_digits(p.slow_noise, "%.2g") +
-                        " times (power) what it is at high frequencies: what lies between the first partials was taken out");
-  if (p.data.options.causality)
-    d.assumed.push_back("the string's loss is causal: waves are faster by " +
-                        in_digits(p.best.value[rosin::pluck_layout::causality], "%.3f") + " / (pi Q) per e-fold of frequency");
+  assume_of_plucks(p, d);
   const auto knows = [&](const char* effect) { return std::find(without.begin(), without.end(), effect) == without.end(); };
   if (p.explained && knows("pluck-position")) name_pluck_position(values, p, d);
   const bool accounted = !plucks->odd || add_odd(*plucks->odd, values, knows, d);

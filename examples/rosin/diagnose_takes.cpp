@@ -148,4 +148,29 @@ void name_pluck_position(const rosin::rig_values& values, const rosin::pluck_dia
   }
 }
 
+void assume_of_plucks(const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
+  using layout = rosin::pluck_layout;
+  if (p.slow_noise > 0)
+    d.assumed.push_back("the plucks' noise is slow, at the pitch " + in_digits(p.slow_noise, "%.2g") +
+                        " times (power) what it is at high frequencies: what lies between the first partials was taken out");
+  if (p.data.options.causality)
+    d.assumed.push_back("the string's loss is causal: waves are faster by " + in_digits(p.best.value[layout::causality], "%.3f") +
+                        " / (pi Q) per e-fold of frequency");
+  if (p.data.options.uneven_loss) {
+    const double highest_Hz = p.data.options.limits_for(p.data.takes.front().rate_Hz).stop_Hz,
+                 most = rosin::detail::largest_unevenness(p.data.layout.string(p.best.value), highest_Hz);
+    d.assumed.push_back("the string's loss is uneven: 1/Q is up to " + in_digits(100 * most, "%.2g") +
+                        " % off its law at a partial");
+  }
+  if (p.data.options.own_places) {
+    double least = 1, most = 0;
+    for (std::size_t t = 0; t < p.data.takes.size(); ++t) {
+      const double off = p.best.value[p.data.layout.position(t)] - p.data.takes[t].position;
+      least = std::min(least, off), most = std::max(most, off);
+    }
+    d.assumed.push_back("the plucks were not made at quite the same place: " + in_digits(most - least, "%.2g") +
+                        " of the length apart");
+  }
+}
+
 }  // namespace tool

@@ -166,6 +166,10 @@ void put_string(const diagnosed_model& model, simulation_plan& plan) {
   s.loss.causality = value_of(model, "loss_causality").value_or(0);
   s.loss.drag_Hz = value_of(model, "loss_drag_Hz").value_or(0);
   s.loss.reference_Hz = s.fundamental_Hz;
+  for (std::size_t i = 0; i < rosin::loss_unevenness::orders; ++i) {
+    s.loss.uneven.cosine[i] = value_of(model, "loss_cosine_" + std::to_string(i + 1)).value_or(0);
+    s.loss.uneven.sine[i] = value_of(model, "loss_sine_" + std::to_string(i + 1)).value_or(0);
+  }
   if (value_of(model, "convention").value_or(-1) > 0) plan.rig.damping = rosin::damping_convention::kelvin_voigt;
 }
 
@@ -177,29 +181,41 @@ void put_ends(const diagnosed_model& model, simulation_plan& plan) {
   plan.burden.string.ends = layout.ends(off);
 }
 
-/// Position of every place that was plucked and fitted, in the order in which a calibration counts them.
-std::vector<std::pair<double, double>> fitted_positions(const diagnosed_model& model, const rosin::rig& rig) {
-  std::vector<std::pair<double, double>> out;
+/// A place that was plucked: as declared, as fitted, and where each take has one of its own, of which.
+struct fitted_place {
+  double declared, fitted;
+  std::string take{};
+};
+
+/// In the order in which a calibration counts them.
+std::vector<fitted_place> fitted_places(const diagnosed_model& model, const rosin::rig& rig) {
+  std::vector<fitted_place> takes, shared;
   for (const auto& take : rig.takes) {
     const auto declared = rig.position_of(take);
     if (!declared || !model.calibration.contains("release_s of " + take.name)) continue;
-    if (std::none_of(out.begin(), out.end(), [&](const auto& p) { return p.first == *declared; }))
-      out.emplace_back(*declared, *declared);
+    takes.push_back({*declared, *declared, take.name});
+    if (std::none_of(shared.begin(), shared.end(), [&](const auto& p) { return p.declared == *declared; }))
+      shared.push_back({*declared, *declared, {}});
   }
+  const auto name_of = [](std::size_t i) { return "position " + std::to_string(i + 1); };
+  auto out = takes.size() > shared.size() && model.calibration.contains(name_of(takes.size() - 1)) ? takes : shared;
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i].second = value_of(model, out.size() == 1 ? "position" : "position " + std::to_string(i + 1)).value_or(out[i].first);
+    out[i].fitted = value_of(model, out.size() == 1 ? "position" : name_of(i)).value_or(out[i].declared);
   return out;
 }
 
 void put_takes(const diagnosed_model& model, const rosin::rig& rig, simulation_plan& plan) {
-  const auto positions = fitted_positions(model, rig);
+  const auto places = fitted_places(model, rig);
   for (auto& take : plan.takes) {
     const double declared = rig.position_of(take.declared).value_or(take.position);
-    const auto nearest = std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
-      return std::abs(a.first - declared) < std::abs(b.first - declared);
-    });
-    if (nearest != positions.end() && take.declared.kind != rosin::take_kind::quiet)
-      take.position = take.pluck.position = declared + nearest->second - nearest->first;
+    const auto is_own = [&](const fitted_place& p) { return p.take == take.declared.name; };
+    auto nearest = std::find_if(places.begin(), places.end(), is_own);
+    if (nearest == places.end())
+      nearest = std::min_element(places.begin(), places.end(), [&](const auto& a, const auto& b) {
+        return std::abs(a.declared - declared) < std::abs(b.declared - declared);
+      });
+    if (nearest != places.end() && take.declared.kind != rosin::take_kind::quiet)
+      take.position = take.pluck.position = declared + nearest->fitted - nearest->declared;
     if (take.declared.kind != rosin::take_kind::pluck) continue;
     const auto of = [&](const char* name) { return value_of(model, std::string{name} + " of " + take.declared.name); };
     take.pluck.release_s = of("release_s").value_or(take.pluck.release_s);

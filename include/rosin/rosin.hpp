@@ -190,6 +190,7 @@
 #include <rosin/diagnose/isolability.hpp>
 #include <rosin/diagnose/law_choice.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
+#include <rosin/diagnose/loosened_plucks.hpp>
 #include <rosin/diagnose/lost_level.hpp>
 #include <rosin/diagnose/mismatch_class.hpp>
 #include <rosin/diagnose/mismatch_map.hpp>

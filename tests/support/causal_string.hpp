@@ -15,10 +15,21 @@ namespace test {
 
 struct causal_string {
   double fundamental_Hz = 440, quality = 500;  ///< at the fundamental
+  double relaxations_apart =
+      0;  ///< ratio of their times, if the tension relaxes by some instead, from a thousandth of the pitch on
 
   /// c k of the flexible string.
   [[nodiscard]] std::complex<double> phase_rate(std::complex<double> s) const {
     const double w0 = 2 * std::numbers::pi * fundamental_Hz, g = 1 / (std::numbers::pi * quality);
+    if (relaxations_apart > 0) {
+      const auto relaxed = [&](std::complex<double> x) {
+        std::complex<double> sum = 1;
+        for (double rate = 1e-3; rate < 1e5; rate *= relaxations_apart)
+          sum += 2 * std::log(relaxations_apart) * g * x / (x + rate);
+        return sum;
+      };
+      return s / std::complex<double>(0, 1) * std::sqrt(relaxed({0, 1}).real() / relaxed(s / w0));
+    }
     return s / std::complex<double>(0, 1) * std::pow(s / w0, -g) / std::pow(std::complex<double>(0, 1), -g).real();
   }
   /// Forces on the ends for a force at `position`.

@@ -158,11 +158,37 @@ struct held_string {
   }
 };
 
+/// How a loss depends on the parameters of the fit.
+struct loss_slope {
+  Eigen::Index of;            ///< in the layout
+  std::complex<double> rate;  ///< of the rate of propagation
+  double inverse_q;           ///< of 1/Q
+};
+
+[[nodiscard]] inline std::vector<loss_slope> loss_slopes(const pluck_layout& layout, const Eigen::VectorXd& v,
+                                                         const loss_law& was, std::complex<double> s, double slow) {
+  using l = pluck_layout;
+  const double f = std::abs(s.imag()) / (2 * std::numbers::pi);
+  std::vector<std::pair<Eigen::Index, double>> steps{
+      {l::inverse_quality, 1e-6}, {l::internal_loss, 1e-10}, {l::air_loss, 1e-4}, {l::causality, 1e-3}, {l::loss_drag, 1e-3}};
+  for (Eigen::Index p = layout.first_of_uneven(); p < layout.first_of_ends(); ++p) steps.emplace_back(p, 1e-3);
+  std::vector<loss_slope> out;
+  Eigen::VectorXd more = v;
+  for (const auto& [of, step] : steps) {
+    more[of] += step;
+    const loss_law changed = layout.string(more).loss;
+    const double lost = (changed.inverse_q(f) - was.inverse_q(f)) / step;
+    out.push_back(
+        {of, slow * std::complex<double>(std::numbers::pi * f * lost, s.imag() * (changed.lead(f) - was.lead(f)) / step), lost});
+    more[of] = v[of];
+  }
+  return out;
+}
+
 /// Everything at one frequency that the rows of a take share.
 struct end_bin {
   std::complex<double> s, slope_stiffness;
-  std::array<std::complex<double>, 5> slope_loss;  ///< by 1/quality, internal_s, air_sqrt_Hz, causality, drag_Hz
-  std::array<double, 5> slope_inverse_q;           ///< of 1/Q, by the same
+  std::vector<loss_slope> slope_loss;
   moving_response a;
   passage_at passage;
   double frequency_Hz, stiffness_s2;
@@ -177,22 +203,9 @@ inline end_bin bin_of(const end_model& m, const std::vector<admittance_mode>& mo
   const passage_at now(s, epsilon, string.loss), stiffer(s, epsilon + step, string.loss);
   const double p = v[m.layout.position(take)], one_way = 0.5 / v[layout::fundamental],
                slow = slowness_ratio(2 * std::numbers::pi * f, epsilon);
-  constexpr std::array small{1e-6, 1e-10, 1e-4, 1e-3, 1e-3};
-  std::array<std::complex<double>, 5> by_loss;
-  std::array<double, 5> lost;
-  for (std::size_t i = 0; i < by_loss.size(); ++i) {
-    const loss_law& was = string.loss;
-    std::array more{1 / was.quality, was.internal_s, was.air_sqrt_Hz, was.causality, was.drag_Hz};
-    more[i] += small[i];
-    const loss_law changed{1 / more[0], more[1], more[2], more[3], more[4], was.reference_Hz};
-    lost[i] = (changed.inverse_q(f) - was.inverse_q(f)) / small[i];
-    by_loss[i] =
-        slow * std::complex<double>(std::numbers::pi * f * lost[i], s.imag() * (changed.lead(f) - was.lead(f)) / small[i]);
-  }
   return {s,
           (stiffer.gamma_per_s - now.gamma_per_s) / step,
-          by_loss,
-          lost,
+          loss_slopes(m.layout, v, string.loss, s, slow),
           moving_string(now, {p * one_way * now.gamma_per_s, (1 - p) * one_way * now.gamma_per_s}, m.admittance(modes, s)),
           now,
           f,
@@ -236,13 +249,8 @@ inline end_problem::rows end_problem::at(const end_model& m, const Eigen::Vector
                   by_stiffness = by_gamma * b.slope_stiffness;
     put(layout::fundamental, -by_gamma * b.passage.gamma_per_s / f0 - 2 * b.stiffness_s2 / f0 * by_stiffness);
     put(layout::inharmonicity, by_stiffness * std::pow(2 * std::numbers::pi * f0, -2));
-    for (const auto& [of, k] : {std::pair{layout::inverse_quality, 0U},
-                                {layout::internal_loss, 1U},
-                                {layout::air_loss, 2U},
-                                {layout::causality, 3U},
-                                {layout::loss_drag, 4U}})
-      put(of,
-          by_gamma * b.slope_loss[k] - gone * (1 + v[layout::convention]) * (A - still) * complex(0, 0.5 * b.slope_inverse_q[k]));
+    for (const detail::loss_slope& d : b.slope_loss)
+      put(d.of, by_gamma * d.rate - gone * (1 + v[layout::convention]) * (A - still) * complex(0, 0.5 * d.inverse_q));
     put(layout::convention, -gone * turned * (A - still));
     put(layout::gain_near + static_cast<Eigen::Index>(c), signal);
     put(L.position(take), by_A * one_way * b.passage.gamma_per_s * (b.a.by_phase[c][0] - b.a.by_phase[c][1]) + turn * by_still);

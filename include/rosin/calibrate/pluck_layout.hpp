@@ -4,8 +4,9 @@
 // What a fit of plucks is given, which quantities it seeks, and in which order they stand:
 //
 //     f0, b, 1/Q, internal loss, air loss, psi, ln gain near, ln gain far, causality and drag of the loss,     shared by all takes
-//     one position for each declared position,
+//     one position for each declared position, or each take,
 //     per take: instant of release, ln strength, offset near, offset far,
+//     where the loss is uneven, its series,
 //     where terminations are known to move, of each mode: ln of frequency, q and Z / M over what is declared.
 //
 #pragma once
@@ -55,6 +56,8 @@ struct pluck_options {
   bool air_loss = false;
   bool convention = true;       ///< psi is fitted
   bool causality = false;       ///< how much the loss disperses is fitted, with a little of 1/Q as f and 1/f
+  bool uneven_loss = false;     ///< the constant part of 1/Q may be uneven by some hundredths
+  bool own_places = false;      ///< each take has a position of its own
   double pass_fraction = 0.34;  ///< edges of the band, of the sampling rate: below where converters begin to cut off
   double stop_fraction = 0.42;
   int most_partials = 160;  ///< a longer, lower string is fitted over fewer hertz
@@ -93,7 +96,7 @@ public:
                const std::array<modal_termination, 2>& ends = {})
       : options_{options}, ends_{ends} {
     for (const pluck_take& take : takes) {
-      auto found = std::find(positions_.begin(), positions_.end(), take.position);
+      auto found = options.own_places ? positions_.end() : std::find(positions_.begin(), positions_.end(), take.position);
       group_.push_back(found - positions_.begin());
       if (found == positions_.end()) positions_.push_back(take.position);
       names_.push_back(take.name);
@@ -103,7 +106,11 @@ public:
   [[nodiscard]] Eigen::Index size() const {
     return first_of_ends() + 3 * static_cast<Eigen::Index>(ends_[0].modes.size() + ends_[1].modes.size());
   }
-  [[nodiscard]] Eigen::Index first_of_ends() const { return at(group_.size(), 0); }
+  /// What follows the takes is shared by all: the loss's unevenness, and the ends.
+  [[nodiscard]] Eigen::Index first_of_uneven() const { return at(group_.size(), 0); }
+  [[nodiscard]] Eigen::Index first_of_ends() const {
+    return first_of_uneven() + (options_.uneven_loss ? 2 * loss_unevenness::orders : 0);
+  }
   [[nodiscard]] bool has_ends() const { return size() > first_of_ends(); }
   [[nodiscard]] std::size_t takes() const { return group_.size(); }
   /// Declared positions, one for each that is fitted.
@@ -121,7 +128,7 @@ public:
   }
   /// Gains and strengths: only their products show.
   [[nodiscard]] bool is_scale(Eigen::Index p) const {
-    return p == gain_near || p == gain_far || (p >= at(0, 0) && p < first_of_ends() && (p - at(0, 0)) % take_size == strength);
+    return p == gain_near || p == gain_far || (p >= at(0, 0) && p < first_of_uneven() && (p - at(0, 0)) % take_size == strength);
   }
 
   [[nodiscard]] std::string name(Eigen::Index p) const {
@@ -131,13 +138,14 @@ public:
     if (p < first_position) return names[static_cast<std::size_t>(p)];
     if (p < at(0, 0)) return positions_.size() == 1 ? "position" : "position " + std::to_string(p - first_position + 1);
     if (p >= first_of_ends()) return name_of_end(static_cast<std::size_t>(p - first_of_ends()));
+    if (p >= first_of_uneven()) return name_of_uneven(static_cast<int>(p - first_of_uneven()));
     const auto i = static_cast<std::size_t>(p - at(0, 0));
     return std::string(mine[i % take_size]) + " of " + names_[i / take_size];
   }
 
   /// Whether this take depends on this parameter.
   [[nodiscard]] bool concerns(Eigen::Index p, std::size_t take) const {
-    return p < at(0, 0) || p >= first_of_ends() || (p >= at(take, 0) && p < at(take + 1, 0));
+    return p < at(0, 0) || p >= first_of_uneven() || (p >= at(take, 0) && p < at(take + 1, 0));
   }
   [[nodiscard]] double release_s(const Eigen::VectorXd& v, std::size_t take) const { return v[at(take, release)]; }
 
@@ -160,10 +168,13 @@ public:
   }
 
   [[nodiscard]] ringing_string string(const Eigen::VectorXd& v) const {
-    return {v[fundamental],
-            v[inharmonicity],
-            {1 / v[inverse_quality], v[internal_loss], v[air_loss], v[causality], v[loss_drag], v[fundamental]},
-            v[convention]};
+    loss_law loss{1 / v[inverse_quality], v[internal_loss], v[air_loss], v[causality], v[loss_drag], v[fundamental]};
+    if (options_.uneven_loss)
+      for (std::size_t i = 0; i < loss_unevenness::orders; ++i) {
+        const Eigen::Index p = first_of_uneven() + 2 * static_cast<Eigen::Index>(i);
+        loss.uneven.cosine[i] = v[p], loss.uneven.sine[i] = v[p + 1];
+      }
+    return {v[fundamental], v[inharmonicity], loss, v[convention]};
   }
 
   /// The terminations: what is declared, and how far it is off.
@@ -184,7 +195,7 @@ public:
     static constexpr std::array mine{1e-9, 1e-6, 1e-6, 1e-6};
     if (p == fundamental) return 1e-7 * v[p];
     if (p < first_position) return common[static_cast<std::size_t>(p)];
-    if (p >= first_of_ends()) return 1e-5;
+    if (p >= first_of_uneven()) return 1e-5;
     return p < at(0, 0) ? 1e-7 : mine[static_cast<std::size_t>(p - at(0, 0)) % take_size];
   }
 
@@ -202,6 +213,7 @@ public:
     if (p == inharmonicity && options_.stiffness && guess.inharmonicity > 0)
       return {guess.inharmonicity, 0.3 * guess.inharmonicity};  // for what does not tell it yet: short looks, few partials
     if (p >= first_of_ends()) return {0, end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3] / 2};
+    if (p >= first_of_uneven()) return {0, uneven_doubt / 2};
     if (p < at(0, 0) || !is_scale(p)) return {0, 0};
     const pluck_take& take = takes[static_cast<std::size_t>(p - at(0, 0)) / take_size];
     return {std::log(take.strength_N), take.strength_tolerance / 2};
@@ -232,6 +244,7 @@ public:
     for (std::size_t t = 0; t < group_.size(); ++t)
       ok = ok && v[position(t)] > 0.002 && v[position(t)] < 0.998 && std::abs(v[position(t)] - start[position(t)]) < 0.06 &&
            std::abs(v[at(t, release)] - start[at(t, release)]) * start[fundamental] < 0.1;
+    for (Eigen::Index p = first_of_uneven(); p < first_of_ends(); ++p) ok = ok && std::abs(v[p]) < 2 * uneven_doubt;
     return ok && ends_within_doubt(v, 2);
   }
   [[nodiscard]] bool ends_within_doubt(const Eigen::VectorXd& v, double times = 1) const {
@@ -245,8 +258,13 @@ public:
 
   /// how well a declared mode is known: frequency, q, mass, relative limits; twice that is another mode
   static constexpr std::array end_doubt{0.01, 0.2, 0.1};
+  /// how far a term of the loss may be from what its law says; twice that is another law
+  static constexpr double uneven_doubt = 0.05;
 
 private:
+  [[nodiscard]] static std::string name_of_uneven(int i) {
+    return std::string(i % 2 == 0 ? "loss_cosine_" : "loss_sine_") + std::to_string(i / 2 + 1);
+  }
   [[nodiscard]] std::string name_of_end(std::size_t i) const {
     static constexpr std::array of_mode{"ln_frequency", "ln_q", "ln_per_mass"};
     const std::size_t mode = i / 3, near = ends_[0].modes.size();

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <rosin/diagnose/clock_drift_effect.hpp>
+#include <rosin/diagnose/loosened_plucks.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/pluck_search.hpp>
 #include <rosin/diagnose/slow_noise.hpp>
@@ -27,6 +28,29 @@ namespace detail {
   auto fit = fit_ends(takes, guess, options, {.free_ends = {false, false}, .most_residual = most_residual});
   if (!fit) return failure{fit.error()};
   return std::move(fit->plucks);
+}
+
+/// The same in the layout of a diagnosis. What is loosened is not free where something strong would bend it.
+[[nodiscard]] inline outcome<pluck_fit_result> fit_declared_loosely(const std::vector<pluck_take>& takes,
+                                                                    const pluck_guess& guess, const pluck_options& options) {
+  pluck_options strict = options;
+  strict.uneven_loss = strict.own_places = false;
+  auto fit = fit_declared(takes, guess, strict);
+  const bool loose = options.uneven_loss || options.own_places;
+  if (fit && loose && fit->residual_ratio[0] < most_loosened)
+    if (auto other = fit_declared(takes, guess, options)) fit = std::move(other);
+  if (!fit) return fit;
+  pluck_options free = options;
+  free.causality = fit->layout.is_free(pluck_layout::causality);
+  const pluck_layout layout(takes, free, guess.ends);
+  const auto places = places_in(layout, fit->layout, fit->value.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(layout.size(), layout.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t k = 0; k < places.size(); ++k)
+      covariance(places[i], places[k]) = fit->covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+  fit->value = carried_over(layout, fit->layout, fit->value), fit->sd = carried_over(layout, fit->layout, fit->sd);
+  fit->covariance = std::move(covariance), fit->layout = layout;
+  return fit;
 }
 
 /// Effects that the declared model, as it was fitted, does not contain.
@@ -60,16 +84,11 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
                                                                    const std::vector<pluck_take>& held, const pluck_guess& guess,
                                                                    pluck_options options, const effects_for& catalogue_for,
                                                                    int most_effects, double least_temper = 1) {
-  auto declared = fit_declared(takes, guess, options);
+  auto declared = fit_declared_loosely(takes, guess, options);
   if (!declared) return failure{declared.error()};
   options.causality = declared->layout.is_free(pluck_layout::causality);
-  const pluck_layout layout(takes, options, guess.ends);
-  pluck_diagnosis d{{takes, guess, options, layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
+  pluck_diagnosis d{{takes, guess, options, declared->layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
   d.data.least_temper = least_temper;
-  d.declared.layout = layout;
-  d.declared.value.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size())),
-      d.declared.sd.conservativeResizeLike(Eigen::VectorXd::Zero(layout.size()));
-  d.declared.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(layout.size(), layout.size()));
   double least_noise = 0;
   std::tie(d, least_noise) = searched(d, catalogue_for(*declared), most_effects);
   drop_what_is_not_predicted(d, held, least_noise);
@@ -85,6 +104,10 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
     options.causality = true;
     auto other = diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects, least_temper);
     if (surely || (other && is_due_to_causal_loss(*other, found))) return other;
+  }
+  if (const auto looser = what_to_loosen(d.data, found, {noise, noise})) {
+    auto other = diagnose_as_recorded(takes, held, guess, *looser, catalogue_for, most_effects, least_temper);
+    if (other && other->best.quality.inflation() < found.quality.inflation()) return other;
   }
   if (d.mismatched) judge_ranking(d, judged, noise);
   if (!d.explained) d.mismatch.place = place_of_residual(d.data, d.best, d.mismatch.take);

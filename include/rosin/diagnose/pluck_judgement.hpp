@@ -38,8 +38,11 @@ struct pluck_diagnosis {
 
 namespace detail {
 
-/// Of a pluck, rms: no law of loss, for one, is exact to less. Relaxations that make it causal leave it flat within a hundredth.
-[[nodiscard]] inline double least_told(const scene_data& data) { return data.options.causality ? 6e-4 : 3e-4; }
+/// Of a pluck, rms: no law of loss, for one, is exact to less. Relaxations that make it causal leave it flat within a hundredth, of which a
+/// short series leaves some.
+[[nodiscard]] inline double least_told(const scene_data& data) {
+  return data.options.causality || data.options.uneven_loss ? 6e-4 : 3e-4;
+}
 
 /// What is real shows in takes that were not fitted, too. Where the loss is causal, made by relaxations that nobody knows one by one,
 /// what is less than such a law may be off by is not real.

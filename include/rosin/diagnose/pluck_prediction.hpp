@@ -93,7 +93,7 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
   std::size_t& nearest = out.nearest;
   for (std::size_t t = 1; t < data.takes.size(); ++t)
     if (std::abs(data.takes[t].position - held.position) < std::abs(data.takes[nearest].position - held.position)) nearest = t;
-  if (data.takes[nearest].position == held.position) most = freedom::release_only;
+  if (data.takes[nearest].position == held.position && !data.options.own_places) most = freedom::release_only;
   const double place = fit.value[data.layout.position(nearest)] + held.position - data.takes[nearest].position;
   v[out.data.layout.position(0)] = place;
   const auto from = [&](int which) { return fit.value[data.layout.at(nearest, which)]; };
@@ -101,8 +101,8 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
   v[out.data.layout.at(0, pluck_layout::strength)] = std::log(held.strength_N);
   v[out.data.layout.at(0, pluck_layout::offset_near)] = from(pluck_layout::offset_near);
   v[out.data.layout.at(0, pluck_layout::offset_far)] = from(pluck_layout::offset_far);
-  v.tail(out.data.layout.size() - out.data.layout.first_of_ends()) =
-      fit.value.segment(data.layout.first_of_ends(), data.layout.size() - data.layout.first_of_ends());
+  v.tail(out.data.layout.size() - out.data.layout.first_of_uneven()) =
+      fit.value.segment(data.layout.first_of_uneven(), data.layout.size() - data.layout.first_of_uneven());
   std::vector<pluck_effect> effects;
   Eigen::Index at = data.layout.size();
   double horizon = std::min(most_periods, fit.horizon_periods);

@@ -92,9 +92,9 @@ public:
     if (free_ == freedom::release_only || free_ == freedom::release_and_place) {
       if (p >= plain_size()) return added(p).take >= 0;
       if (p < at(0, 0)) return p >= first_position && free_ == freedom::release_and_place;
-      return p < first_of_ends();
+      return p < first_of_uneven();
     }
-    if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_ends())) return false;
+    if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_uneven())) return false;
     return p >= plain_size() ? !added(p).by_score : pluck_layout::is_free(p);
   }
   [[nodiscard]] bool is_scale(Eigen::Index p) const { return p < plain_size() && pluck_layout::is_scale(p); }
@@ -167,12 +167,12 @@ public:
 private:
   /// What the poles depend on.
   [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v, const pluck_scene& s) const {
-    const Eigen::Index more = v.size() - first_of_ends();
+    const Eigen::Index more = v.size() - first_of_uneven();
     constexpr Eigen::Index of_loss = loss_drag + 1 - causality;
     Eigen::VectorXd k(gain_near + of_loss + more + 1);
     k << v.head(gain_near), v.segment<of_loss>(causality), v.tail(more), s.string.fundamental_Hz;
     // what may be about 0: how near a string is tells by their size
-    k.segment(gain_near, of_loss + plain_size() - first_of_ends()).array() += 1;
+    k.segment(gain_near, of_loss + plain_size() - first_of_uneven()).array() += 1;
     return k;
   }
 

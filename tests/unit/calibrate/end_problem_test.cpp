@@ -38,11 +38,13 @@ TEST_CASE("with the true values next to nothing of a simulated pluck is left") {
 
 TEST_CASE("the Jacobian is that of the residual") {
   const auto takes = test::pluck_at(rig, {0.3, 0.2}, 0.03, 0);
-  const rosin::end_model m{rosin::pluck_layout(takes, {.air_loss = true, .causality = true}), {0, 2.0}, {}, {0, 1}};
+  const rosin::end_model m{
+      rosin::pluck_layout(takes, {.air_loss = true, .causality = true, .uneven_loss = true}), {0, 2.0}, {}, {0, 1}};
   const rosin::end_problem problem(takes, {0.006, 0.006}, 600, 8e3);
   Eigen::VectorXd v = truth(m, takes);
   v[rosin::pluck_layout::internal_loss] = 1e-8, v[rosin::pluck_layout::air_loss] = 1e-3, v[rosin::pluck_layout::convention] = 0.3;
   v[rosin::pluck_layout::causality] = 0.8, v[rosin::pluck_layout::loss_drag] = 0.01;
+  for (Eigen::Index p = m.layout.first_of_uneven(); p < m.layout.size(); ++p) v[p] = p % 2 == 0 ? 0.02 : -0.01;
   for (Eigen::Index p = 0; p < m.size(); ++p) {
     const double h = p == rosin::pluck_layout::air_loss ? 1e-5 : p < m.layout.size() ? 10 * m.layout.step(p, v) : 1e-5;
     Eigen::VectorXd up = v, down = v;

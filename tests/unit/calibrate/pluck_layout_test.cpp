@@ -89,6 +89,32 @@ TEST_CASE("what no string could be is not plausible") {
   CHECK(changed(layout::internal_loss, 1e-7));
 }
 
+TEST_CASE("a loss that may be uneven has its series after the takes, by some hundredths") {
+  std::array<rosin::modal_termination, 2> ends;
+  ends[0].modes = {{900, 10, 20}};
+  const layout l(three_takes(), {.uneven_loss = true}, ends), plain(three_takes(), {}, ends);
+  REQUIRE(l.size() == plain.size() + 8);
+  CHECK(plain.first_of_uneven() == plain.first_of_ends());
+  const Eigen::Index first = l.first_of_uneven();
+  CHECK(l.name(first) == "loss_cosine_1");
+  CHECK(l.name(first + 7) == "loss_sine_4");
+  CHECK(l.name(first + 8) == "ln_frequency of near end's mode 1");
+  CHECK(l.is_free(first));
+  CHECK_FALSE(l.is_scale(first + 1));
+  CHECK(l.concerns(first, 2));
+  CHECK(l.prior(first, three_takes(), {}).sd == test::approx(0.025));
+  Eigen::VectorXd v = l.initial(three_takes(), {.fundamental_Hz = 600}, 600, {0.004, 0.004, 0.004}, {0.3, 0.2, 0.3});
+  const Eigen::VectorXd start = v;
+  v[first + 1] = 0.02, v[first + 6] = 0.01;
+  CHECK(l.plausible(v, start, 50e3));
+  CHECK(l.string(v).loss.uneven.sine[0] == 0.02);
+  CHECK(l.string(v).loss.uneven.cosine[3] == 0.01);
+  CHECK_FALSE(plain.string(plain.initial(three_takes(), {.fundamental_Hz = 600}, 600, {0.004, 0.004, 0.004}, {0.3, 0.2, 0.3}))
+                  .loss.uneven.is_there());
+  v[first] = 0.11;
+  CHECK_FALSE(l.plausible(v, start, 50e3));
+}
+
 TEST_CASE("terminations that are known to move stand at the end: how far each mode is off, about nothing, within limits") {
   std::array<rosin::modal_termination, 2> ends;
   ends[0].modes = {{900, 10, 20}}, ends[1].modes = {{2400, 12, 40}, {470, 30, 4}};

@@ -104,14 +104,15 @@ TEST_CASE("behind a high-pass what was held is gone until the first wave comes, 
 TEST_CASE("poles of a string that carries something follow all of its loss, whatever was asked before") {
   const rosin::string_facts facts{
       .fundamental_Hz = 659.69, .rate_Hz = 128e3, .highest_Hz = 53e3, .impedance_Ns_m = 0.175, .length_m = 0.314, .takes = 2};
-  const auto layout = test::two_plucks({.causality = true});
+  const auto layout = test::two_plucks({.causality = true, .uneven_loss = true});
   const std::vector<rosin::pluck_effect> effects{rosin::point_mass_effect(facts)};
   const rosin::scene_plucks model(layout, {0, 0}, effects);
   Eigen::VectorXd v = test::values_of(layout, std::vector<double>(effects[0].parameters.size(), 0.0));
   v[layout.size()] = 0.4, v[layout.size() + 1] = 1e-6;
   const auto lines_of = [&](const rosin::scene_plucks& m) { return m.lines(v, 0, 1, 0.005, {40e3, 50e3}, 40); };
   const auto before = lines_of(model);
-  for (const Eigen::Index p : {rosin::pluck_layout::causality, rosin::pluck_layout::loss_drag}) {
+  for (const Eigen::Index p :
+       {Eigen::Index{rosin::pluck_layout::causality}, Eigen::Index{rosin::pluck_layout::loss_drag}, layout.first_of_uneven()}) {
     CAPTURE(p);
     v[p] += p == rosin::pluck_layout::causality ? 1.0 : 0.05;
     const auto now = lines_of(model), fresh = lines_of(rosin::scene_plucks(layout, {0, 0}, effects));

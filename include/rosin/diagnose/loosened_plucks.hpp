@@ -1,0 +1,119 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// What plucks leave may be no physics that was left out, but what no declared model is exact to: a loss that is uneven by some
+// hundredths (loss_unevenness), a wire that is not set down twice at quite the same place. Neither is given a name. They are freed
+// where that accounts for what a search has left, or for what its weaker effects were taken for, and then the search begins anew.
+//
+#pragma once
+
+#include <rosin/diagnose/pluck_exchange.hpp>
+
+namespace rosin {
+
+namespace detail {
+
+/// Of a pluck, as what is freed is worth no more: a loss that is 5 % uneven.
+inline constexpr double most_loosened = 0.02;
+/// Of the length: how far apart plucks may be that were meant to be made at one place.
+inline constexpr double most_apart = 2e-3;
+
+/// Where the parameters of one layout of the same takes stand in another, effects behind it; -1: nowhere.
+[[nodiscard]] inline std::vector<Eigen::Index> places_in(const pluck_layout& to, const pluck_layout& from, Eigen::Index size) {
+  std::vector<Eigen::Index> out(static_cast<std::size_t>(size), -1);
+  const auto moves = [&](Eigen::Index first, Eigen::Index count, Eigen::Index where) {
+    for (Eigen::Index i = 0; i < count; ++i) out[static_cast<std::size_t>(first + i)] = where + i;
+  };
+  moves(0, pluck_layout::first_position, 0);
+  for (std::size_t t = from.takes(); t-- > 0;) {  // a place that is shared stands for its first take
+    moves(from.position(t), 1, to.position(t));
+    moves(from.at(t, 0), pluck_layout::take_size, to.at(t, 0));
+  }
+  const auto uneven = [](const pluck_layout& l) { return l.first_of_ends() - l.first_of_uneven(); };
+  if (uneven(from) == uneven(to)) moves(from.first_of_uneven(), uneven(from), to.first_of_uneven());
+  if (from.size() - from.first_of_ends() == to.size() - to.first_of_ends())
+    moves(from.first_of_ends(), from.size() - from.first_of_ends(), to.first_of_ends());
+  moves(from.size(), size - from.size(), to.size());
+  return out;
+}
+
+/// Values by another layout; what that alone has is 0, but for places, which begin where they were shared.
+[[nodiscard]] inline Eigen::VectorXd carried_over(const pluck_layout& to, const pluck_layout& from, const Eigen::VectorXd& v) {
+  const auto places = places_in(to, from, v.size());
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(to.size() + v.size() - from.size());
+  for (Eigen::Index p = 0; p < v.size(); ++p)
+    if (places[static_cast<std::size_t>(p)] >= 0) out[places[static_cast<std::size_t>(p)]] = v[p];
+  for (std::size_t t = 0; t < from.takes(); ++t) out[to.position(t)] = v[from.position(t)];
+  return out;
+}
+
+[[nodiscard]] inline scene_data with_options(scene_data data, const pluck_options& options) {
+  data.options = options;
+  data.layout = pluck_layout(data.takes, options, data.guess.ends);
+  return data;
+}
+
+/// The largest share by which the constant part of the loss is off at a partial.
+[[nodiscard]] inline double largest_unevenness(const ringing_string& string, double highest_Hz) {
+  double most = 0;
+  for (double f = string.fundamental_Hz; f <= highest_Hz; f += string.fundamental_Hz)
+    most = std::max(most, std::abs(string.loss.uneven(std::log(f / string.loss.reference_Hz))));
+  return most;
+}
+
+/// Whether what was freed is as small as it has to be.
+[[nodiscard]] inline bool is_slight(const scene_data& data, const Eigen::VectorXd& v) {
+  const double highest_Hz = data.options.limits_for(data.takes.front().rate_Hz).stop_Hz;
+  if (largest_unevenness(data.layout.string(v), highest_Hz) > pluck_layout::uneven_doubt) return false;
+  for (std::size_t t = 0; t < data.takes.size() && data.options.own_places; ++t)
+    for (std::size_t other = 0; other < t; ++other)
+      if (data.takes[t].position == data.takes[other].position &&
+          std::abs(v[data.layout.position(t)] - v[data.layout.position(other)]) > most_apart)
+        return false;
+  return true;
+}
+
+/// The effects that were found, and what is left of them where some are taken out: all of them first, none last.
+[[nodiscard]] inline std::vector<scene_fit> with_fewer(const scene_data& data, const scene_fit& found) {
+  std::vector<scene_fit> out;
+  const std::size_t count = found.effects.size(), sets = std::size_t{1} << std::min<std::size_t>(count, 4);
+  for (std::size_t gone = 0; gone < sets; ++gone) {
+    scene_fit fewer = found;
+    for (std::size_t i = count; i-- > 0;)
+      if ((gone >> i) & 1U) fewer = without(data, fewer, i);
+    out.push_back(std::move(fewer));
+  }
+  return out;
+}
+
+/// Options with what accounts for most of what these effects leave, or for as much as some of them do and more likely; nothing where
+/// they leave no more than noise. Without effects that are strong nothing is asked.
+[[nodiscard]] inline std::optional<pluck_options> what_to_loosen(const scene_data& data, const scene_fit& found,
+                                                                 std::array<double, 2> noise) {
+  if (found.quality.inflation() == 1 || (data.options.uneven_loss && data.options.own_places)) return std::nullopt;
+  const auto stage_of = [&](freedom free) { return fit_stage{1000, found.horizon_periods, true, free}; };
+  for (scene_fit& fewer : with_fewer(data, found)) {
+    const bool all = fewer.effects.size() == found.effects.size();
+    if (!all) fewer = fit_scene(data, fewer.effects, fewer.value, {stage_of(freedom::all)}, noise);
+    if (!all && !(fewer.quality.residual_ratio[0] < most_loosened)) continue;
+    for (const auto& [uneven, own] : {std::pair{true, false}, {false, true}, {true, true}}) {
+      pluck_options options = data.options;
+      options.uneven_loss = uneven || options.uneven_loss, options.own_places = own || options.own_places;
+      const scene_data freed = with_options(data, options);
+      if (freed.layout.size() == data.layout.size()) continue;
+      const scene_fit tried =
+          fit_scene(freed, fewer.effects, carried_over(freed.layout, data.layout, fewer.value), {stage_of(freedom::all)}, noise);
+      const double parameters = static_cast<double>(freed.layout.size() - data.layout.size()),
+                   samples = tried.quality.samples[0] + tried.quality.samples[1],
+                   price = price_of(tried, noise) + parameters * tried.quality.inflation() * std::log(samples);
+      const bool better =
+          all ? tried.quality.inflation() - 1 < (found.quality.inflation() - 1) / 3 : price < price_of(found, noise);
+      if (better && is_slight(freed, tried.value)) return options;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace detail
+
+}  // namespace rosin
