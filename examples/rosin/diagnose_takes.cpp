@@ -163,7 +163,7 @@ void assume_of_plucks(const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
                         " % off its law at a partial");
   }
   if (p.data.options.own_places) {
-    double least = 1, most = 0;
+    double least = 1, most = -1;
     for (std::size_t t = 0; t < p.data.takes.size(); ++t) {
       const double off = p.best.value[p.data.layout.position(t)] - p.data.takes[t].position;
       least = std::min(least, off), most = std::max(most, off);

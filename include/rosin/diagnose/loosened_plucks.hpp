@@ -86,29 +86,49 @@ inline constexpr double most_apart = 2e-3;
   return out;
 }
 
-/// Options with what accounts for most of what these effects leave, or for as much as some of them do and more likely; nothing where
-/// they leave no more than noise. Without effects that are strong nothing is asked.
+/// What is to be freed, how the effects look then, and what that costs besides (in units of price_of).
+struct loosened_fit {
+  scene_data data;
+  scene_fit fit;
+  double parameters = 0;
+};
+
+[[nodiscard]] inline loosened_fit fit_loosened(const scene_data& data, const scene_fit& fewer, double periods, bool uneven,
+                                               bool own, std::array<double, 2> noise) {
+  pluck_options options = data.options;
+  options.uneven_loss = uneven || options.uneven_loss, options.own_places = own || options.own_places;
+  loosened_fit out{with_options(data, options), {}, 0};
+  out.parameters = static_cast<double>(out.data.layout.size() - data.layout.size());
+  out.fit = fit_scene(out.data, fewer.effects, carried_over(out.data.layout, data.layout, fewer.value),
+                      {{1000, periods, true, freedom::all}}, noise);
+  return out;
+}
+
+/// Options with what accounts for most of what these effects leave, or for as much as some of them do and more likely. Of what
+/// leaves more than a fiftieth of its first periods without some of its effects nothing else is asked.
 [[nodiscard]] inline std::optional<pluck_options> what_to_loosen(const scene_data& data, const scene_fit& found,
                                                                  std::array<double, 2> noise) {
-  if (found.quality.inflation() == 1 || (data.options.uneven_loss && data.options.own_places)) return std::nullopt;
-  const auto stage_of = [&](freedom free) { return fit_stage{1000, found.horizon_periods, true, free}; };
+  constexpr double first_periods = 20;
+  if (found.quality.inflation() == 1) return std::nullopt;
+  const double was = found.quality.inflation() - 1, periods = found.horizon_periods;
   for (scene_fit& fewer : with_fewer(data, found)) {
     const bool all = fewer.effects.size() == found.effects.size();
-    if (!all) fewer = fit_scene(data, fewer.effects, fewer.value, {stage_of(freedom::all)}, noise);
+    for (const double seen : {std::min(first_periods, periods), periods})
+      if (!all && fewer.quality.residual_ratio[0] < most_loosened)
+        fewer = fit_scene(data, fewer.effects, fewer.value, {{1000, seen, true, freedom::all}}, noise);
     if (!all && !(fewer.quality.residual_ratio[0] < most_loosened)) continue;
-    for (const auto& [uneven, own] : {std::pair{true, false}, {false, true}, {true, true}}) {
-      pluck_options options = data.options;
-      options.uneven_loss = uneven || options.uneven_loss, options.own_places = own || options.own_places;
-      const scene_data freed = with_options(data, options);
-      if (freed.layout.size() == data.layout.size()) continue;
-      const scene_fit tried =
-          fit_scene(freed, fewer.effects, carried_over(freed.layout, data.layout, fewer.value), {stage_of(freedom::all)}, noise);
-      const double parameters = static_cast<double>(freed.layout.size() - data.layout.size()),
-                   samples = tried.quality.samples[0] + tried.quality.samples[1],
-                   price = price_of(tried, noise) + parameters * tried.quality.inflation() * std::log(samples);
-      const bool better =
-          all ? tried.quality.inflation() - 1 < (found.quality.inflation() - 1) / 3 : price < price_of(found, noise);
-      if (better && is_slight(freed, tried.value)) return options;
+    const auto accounts = [&](bool uneven, bool own) -> std::optional<pluck_options> {
+      const loosened_fit x = fit_loosened(data, fewer, periods, uneven, own, noise);
+      const auto& q = x.fit.quality;
+      const double price = price_of(x.fit, noise) + x.parameters * q.inflation() * std::log(q.samples[0] + q.samples[1]);
+      const bool better = all ? q.inflation() - 1 < was / 3 : price < price_of(found, noise);
+      if (x.parameters == 0 || !better || !is_slight(x.data, x.fit.value)) return std::nullopt;
+      return x.data.options;
+    };
+    if (const auto both = accounts(true, true)) {
+      if (const auto uneven = accounts(true, false)) return uneven;
+      if (const auto own = accounts(false, true)) return own;
+      return both;
     }
   }
   return std::nullopt;

@@ -74,8 +74,9 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   return !d.data.options.causality && found.quality.inflation() > far_off;
 }
 [[nodiscard]] inline bool is_due_to_causal_loss(const pluck_diagnosis& other, const scene_fit& without) {
-  constexpr double most_left = 1.0 / 9;
-  return other.explained && is_causal(other.best.value[pluck_layout::causality], other.best.sd[pluck_layout::causality]) &&
+  constexpr double most_left = 1.0 / 9, least_sure = 2.5;  // what is left of strong effects makes for doubt
+  return other.explained &&
+         is_causal(other.best.value[pluck_layout::causality], other.best.sd[pluck_layout::causality] / least_sure) &&
          other.best.quality.inflation() - 1 < most_left * (without.quality.inflation() - 1);
 }
 
@@ -105,7 +106,8 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
     auto other = diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects, least_temper);
     if (surely || (other && is_due_to_causal_loss(*other, found))) return other;
   }
-  if (const auto looser = what_to_loosen(d.data, found, {noise, noise})) {
+  const bool well = d.explained && found.effects.size() < 2 && found.quality.inflation() < 1.5;
+  if (const auto looser = well ? std::nullopt : what_to_loosen(d.data, found, {noise, noise})) {
     auto other = diagnose_as_recorded(takes, held, guess, *looser, catalogue_for, most_effects, least_temper);
     if (other && other->best.quality.inflation() < found.quality.inflation()) return other;
   }
