@@ -16,7 +16,7 @@ namespace detail {
 /// Of a pluck, as what is freed is worth no more: a loss that is 5 % uneven.
 inline constexpr double most_loosened = 0.02;
 /// Of the length: how far apart plucks may be that were meant to be made at one place.
-inline constexpr double most_apart = 2e-3;
+inline constexpr double most_places_apart = 2e-3;
 
 /// Where the parameters of one layout of the same takes stand in another, effects behind it; -1: nowhere.
 [[nodiscard]] inline std::vector<Eigen::Index> places_in(const pluck_layout& to, const pluck_layout& from, Eigen::Index size) {
@@ -68,7 +68,7 @@ inline constexpr double most_apart = 2e-3;
   for (std::size_t t = 0; t < data.takes.size() && data.options.own_places; ++t)
     for (std::size_t other = 0; other < t; ++other)
       if (data.takes[t].position == data.takes[other].position &&
-          std::abs(v[data.layout.position(t)] - v[data.layout.position(other)]) > most_apart)
+          std::abs(v[data.layout.position(t)] - v[data.layout.position(other)]) > most_places_apart)
         return false;
   return true;
 }
