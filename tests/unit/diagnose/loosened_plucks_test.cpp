@@ -92,7 +92,8 @@ TEST_CASE("loosened plucks: a loss of a few relaxations and places that differ a
           doctest::test_suite("long")) {
   for (const double apart : {0.0, 2e-4})
     for (const double leaks : {0.0, 0.004}) {
-      CAPTURE(apart), CAPTURE(leaks);
+      CAPTURE(apart);
+      CAPTURE(leaks);
       const auto d = diagnosis_of(plucks_of_relaxing_string(apart, leaks));
       REQUIRE_MESSAGE(d, d.error());
       CHECK(d->data.options.uneven_loss);
