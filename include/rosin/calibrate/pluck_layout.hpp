@@ -213,7 +213,7 @@ public:
     if (p == inharmonicity && options_.stiffness && guess.inharmonicity > 0)
       return {guess.inharmonicity, 0.3 * guess.inharmonicity};  // for what does not tell it yet: short looks, few partials
     if (p >= first_of_ends()) return {0, end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3] / 2};
-    if (p >= first_of_uneven()) return {0, uneven_doubt / 2};
+    if (p >= first_of_uneven()) return {0, uneven_doubt / 5};
     if (p < at(0, 0) || !is_scale(p)) return {0, 0};
     const pluck_take& take = takes[static_cast<std::size_t>(p - at(0, 0)) / take_size];
     return {std::log(take.strength_N), take.strength_tolerance / 2};
@@ -258,7 +258,7 @@ public:
 
   /// how well a declared mode is known: frequency, q, mass, relative limits; twice that is another mode
   static constexpr std::array end_doubt{0.01, 0.2, 0.1};
-  /// how far a term of the loss may be from what its law says; twice that is another law
+  /// how far a loss may be from what its law says, a fifth of it a usual term of its series; twice that is another law
   static constexpr double uneven_doubt = 0.05;
 
 private:

@@ -107,7 +107,8 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
     if (surely || (other && is_due_to_causal_loss(*other, found))) return other;
   }
   constexpr double much = 10;  // no model of one effect is exact
-  const bool well = d.explained && found.effects.size() < 2 && found.quality.inflation() < much;
+  const bool well = d.explained && found.effects.size() < 2 && found.quality.inflation() < much &&
+                    d.base.quality.residual_ratio[0] > most_loosened;
   if (const auto looser = well ? std::nullopt : what_to_loosen(d.data, found, {noise, noise})) {
     auto other = diagnose_as_recorded(takes, held, guess, *looser, catalogue_for, most_effects, least_temper);
     if (other && other->best.quality.inflation() < found.quality.inflation()) return other;

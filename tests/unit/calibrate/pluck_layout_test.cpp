@@ -102,7 +102,7 @@ TEST_CASE("a loss that may be uneven has its series after the takes, by some hun
   CHECK(l.is_free(first));
   CHECK_FALSE(l.is_scale(first + 1));
   CHECK(l.concerns(first, 2));
-  CHECK(l.prior(first, three_takes(), {}).sd == test::approx(0.025));
+  CHECK(l.prior(first, three_takes(), {}).sd == test::approx(0.01));
   Eigen::VectorXd v = l.initial(three_takes(), {.fundamental_Hz = 600}, 600, {0.004, 0.004, 0.004}, {0.3, 0.2, 0.3});
   const Eigen::VectorXd start = v;
   v[first + 1] = 0.02, v[first + 6] = 0.01;
