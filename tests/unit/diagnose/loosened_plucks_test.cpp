@@ -13,8 +13,6 @@
 
 namespace {
 
-using layout = rosin::pluck_layout;
-
 std::vector<rosin::pluck_take> three_at_one_place() {
   std::vector<rosin::pluck_take> takes(3);
   for (std::size_t t = 0; t < 3; ++t) takes[t].name = std::to_string(t), takes[t].rate_Hz = 96e3, takes[t].position = 0.3;
@@ -58,16 +56,16 @@ TEST_CASE("loosened plucks: values keep their meaning from one layout to another
   const auto takes = three_at_one_place();
   std::array<rosin::modal_termination, 2> ends;
   ends[1].modes = {{900, 10, 20}};
-  const layout from(takes, {}, ends), to(takes, {.uneven_loss = true, .own_places = true}, ends);
+  const rosin::pluck_layout from(takes, {}, ends), to(takes, {.uneven_loss = true, .own_places = true}, ends);
   REQUIRE(to.size() == from.size() + 8 + 2);
   Eigen::VectorXd v(from.size() + 2);  // and an effect of two parameters
   for (Eigen::Index p = 0; p < v.size(); ++p) v[p] = static_cast<double>(p + 1);
   const Eigen::VectorXd moved = rosin::detail::carried_over(to, from, v);
   REQUIRE(moved.size() == to.size() + 2);
-  CHECK(moved[layout::convention] == v[layout::convention]);
+  CHECK(moved[rosin::pluck_layout::convention] == v[rosin::pluck_layout::convention]);
   for (std::size_t t = 0; t < 3; ++t) {
     CHECK(moved[to.position(t)] == v[from.position(0)]);
-    CHECK(moved[to.at(t, layout::offset_far)] == v[from.at(t, layout::offset_far)]);
+    CHECK(moved[to.at(t, rosin::pluck_layout::offset_far)] == v[from.at(t, rosin::pluck_layout::offset_far)]);
   }
   CHECK(moved.segment(to.first_of_uneven(), 8).norm() == 0);
   CHECK(moved[to.first_of_ends() + 2] == v[from.first_of_ends() + 2]);
