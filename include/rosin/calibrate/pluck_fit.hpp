@@ -151,7 +151,9 @@ inline void approach_and_finish(const std::vector<pluck_take>& takes, const pluc
 }
 
 /// Whether dispersion that was found may be loss that is causal, and not something else that disperses, or what was known before.
-inline bool is_causal(double causality, double sd) { return sd < 0.1 && causality > 0.2 && causality < 1.5; }
+inline bool is_causal(double causality, double sd, double most_sd = 0.1) {
+  return sd < most_sd && causality > 0.2 && causality < 1.5;
+}
 
 /// Whether freeing the dispersion of the loss could leave so little: what a few steps from a fit that follows the whole record do.
 inline bool may_be_causal(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& freed,

@@ -113,6 +113,7 @@ struct loosened_fit {
   const double was = found.quality.inflation() - 1, periods = found.horizon_periods;
   for (scene_fit& fewer : with_fewer(data, found)) {
     const bool all = fewer.effects.size() == found.effects.size();
+    // `fewer` begins with what `found` leaves; each fit goes on only where the one before leaves little
     for (const double seen : {std::min(first_periods, periods), periods})
       if (!all && fewer.quality.residual_ratio[0] < most_loosened)
         fewer = fit_scene(data, fewer.effects, fewer.value, {{1000, seen, true, freedom::all}}, noise);

@@ -74,10 +74,17 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   return !d.data.options.causality && found.quality.inflation() > far_off;
 }
 [[nodiscard]] inline bool is_due_to_causal_loss(const pluck_diagnosis& other, const scene_fit& without) {
-  constexpr double most_left = 1.0 / 9, least_sure = 2.5;  // what is left of strong effects makes for doubt
+  constexpr double most_left = 1.0 / 9, most_sd = 0.25;  // what is left of strong effects makes for doubt
   return other.explained &&
-         is_causal(other.best.value[pluck_layout::causality], other.best.sd[pluck_layout::causality] / least_sure) &&
+         is_causal(other.best.value[pluck_layout::causality], other.best.sd[pluck_layout::causality], most_sd) &&
          other.best.quality.inflation() - 1 < most_left * (without.quality.inflation() - 1);
+}
+
+/// One effect, of what nothing slight could be, and little beside it: no model of an effect is exact.
+[[nodiscard]] inline bool tells_one_effect(const pluck_diagnosis& d, const scene_fit& found) {
+  constexpr double little = 10;
+  return d.explained && found.effects.size() == 1 && found.quality.inflation() < little &&
+         d.base.quality.residual_ratio[0] > most_loosened;
 }
 
 /// Of recordings as they are.
@@ -106,10 +113,7 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
     auto other = diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects, least_temper);
     if (surely || (other && is_due_to_causal_loss(*other, found))) return other;
   }
-  constexpr double much = 10;  // no model of one effect is exact
-  const bool well = d.explained && found.effects.size() < 2 && found.quality.inflation() < much &&
-                    d.base.quality.residual_ratio[0] > most_loosened;
-  if (const auto looser = well ? std::nullopt : what_to_loosen(d.data, found, {noise, noise})) {
+  if (const auto looser = tells_one_effect(d, found) ? std::nullopt : what_to_loosen(d.data, found, {noise, noise})) {
     auto other = diagnose_as_recorded(takes, held, guess, *looser, catalogue_for, most_effects, least_temper);
     if (other && other->best.quality.inflation() < found.quality.inflation()) return other;
   }
