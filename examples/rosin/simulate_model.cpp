@@ -181,26 +181,25 @@ void put_ends(const diagnosed_model& model, simulation_plan& plan) {
   plan.burden.string.ends = layout.ends(off);
 }
 
-/// A place that was plucked: as declared, as fitted, and where each take has one of its own, of which.
+/// Where a pluck was made: as declared, and as fitted.
 struct fitted_place {
   double declared, fitted;
-  std::string take{};
+  std::string take;
 };
 
-/// In the order in which a calibration counts them.
 std::vector<fitted_place> fitted_places(const diagnosed_model& model, const rosin::rig& rig) {
-  std::vector<fitted_place> takes, shared;
-  for (const auto& take : rig.takes) {
-    const auto declared = rig.position_of(take);
-    if (!declared || !model.calibration.contains("release_s of " + take.name)) continue;
-    takes.push_back({*declared, *declared, take.name});
-    if (std::none_of(shared.begin(), shared.end(), [&](const auto& p) { return p.declared == *declared; }))
-      shared.push_back({*declared, *declared, {}});
-  }
-  const auto name_of = [](std::size_t i) { return "position " + std::to_string(i + 1); };
-  auto out = takes.size() > shared.size() && model.calibration.contains(name_of(takes.size() - 1)) ? takes : shared;
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i].fitted = value_of(model, out.size() == 1 ? "position" : name_of(i)).value_or(out[i].declared);
+  std::vector<rosin::pluck_take> takes;
+  for (const auto& take : rig.takes)
+    if (const auto declared = rig.position_of(take); declared && model.calibration.contains("release_s of " + take.name))
+      takes.push_back({.name = take.name, .position = *declared});
+  rosin::pluck_options options;
+  options.own_places = rosin::pluck_layout(takes, options).positions().size() < takes.size() &&
+                       model.calibration.contains("position " + std::to_string(takes.size()));
+  const rosin::pluck_layout layout(takes, options);
+  std::vector<fitted_place> out;
+  for (std::size_t t = 0; t < takes.size(); ++t)
+    out.push_back(
+        {takes[t].position, value_of(model, layout.name(layout.position(t))).value_or(takes[t].position), takes[t].name});
   return out;
 }
 
