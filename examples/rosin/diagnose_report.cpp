@@ -304,7 +304,7 @@ std::string list_of(const std::vector<std::string>& names, const char* none) {
 }
 
 /// Two digits more than the standard deviation leaves certain, and no row of zeros.
-std::string with_interval(const diagnosed_value& p) {
+std::string value_and_interval(const diagnosed_value& p) {
   if (!(std::isfinite(p.sd) && p.sd > 0)) return in_digits(p.value, "%.6g");
   const double certain = std::ceil(std::log10(std::max(1e-300, std::abs(p.value)) / p.sd));
   const std::string form = "%." + std::to_string(static_cast<int>(std::clamp(certain, 0.0, 10.0)) + 2) + "g";
@@ -328,7 +328,7 @@ void add_missing(const rig_diagnosis& d, report_page& page) {
     page.result.emplace_back("missing: " + m.effect + place, m.probability > 0.9999
                                                                  ? "probability above 0.9999"
                                                                  : "probability " + in_digits(m.probability, "%.4g"));
-    for (const auto& p : m.parameters) page.result.emplace_back("    " + p.name, with_interval(p));
+    for (const auto& p : m.parameters) page.result.emplace_back("    " + p.name, value_and_interval(p));
     if (!m.indistinguishable_from.empty())
       page.result.emplace_back("    cannot be told here from", list_of(m.indistinguishable_from, ""));
   }

@@ -24,12 +24,13 @@ std::vector<rosin::pluck_take> plucks_of_relaxing_string(double apart, double le
   const test::causal_string string{.fundamental_Hz = 660, .quality = 700, .relaxations_apart = 5.5};
   std::mt19937_64 random{7};
   std::normal_distribution<double> noise{0, 2e-4};
+  constexpr std::size_t samples = 7000;
   auto takes = three_at_one_place();
   for (std::size_t t = 0; t < 3; ++t) {
     const double force_N = t == 1 ? 0.5 : 1.0;
     takes[t].strength_N = force_N;
-    takes[t].force_N = string.pluck(0.3 + apart * (static_cast<double>(t) - 1), 0.004, 96e3, 12000, {44e3, 47e3});
-    for (std::size_t i = 0; i < 12000; ++i) {
+    takes[t].force_N = string.pluck(0.3 + apart * (static_cast<double>(t) - 1), 0.004, 96e3, samples, {44e3, 47e3});
+    for (std::size_t i = 0; i < samples; ++i) {
       const double near = force_N * takes[t].force_N[0][i], far = force_N * takes[t].force_N[1][i];
       takes[t].force_N[0][i] = near + leaks * far + noise(random), takes[t].force_N[1][i] = far + leaks * near + noise(random);
     }
