@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct options {
+struct challenge_options {
   std::string out, shard = "1/1";
   std::vector<std::string> hidden;
   std::uint64_t seed = 1;
@@ -34,14 +34,14 @@ struct options {
   bool only_make = false, leave_out = false, forces = false, json = false;
 };
 
-struct places {
+struct challenge_folders {
   fs::path rigs, truth, diagnoses, forces;
-  places(const fs::path& root, bool leave_out)
+  challenge_folders(const fs::path& root, bool leave_out)
       : rigs{root / "rigs"}, truth{root / "truth"}, diagnoses{root / (leave_out ? "diagnoses-left-out" : "diagnoses")},
         forces{root / "forces"} {}
 };
 
-std::string describe(const options& o) {
+std::string describe(const challenge_options& o) {
   std::string out = "`rosin challenge --seed " + std::to_string(o.seed) + " --count " + std::to_string(o.count) + " --effects " +
                     std::to_string(o.effects);
   if (o.strength != 1) out += " --strength " + in_digits(o.strength);
@@ -63,7 +63,8 @@ std::size_t part_of(const std::string& name, std::size_t parts) {
 }
 
 /// Writes what is not there yet; a rig is complete once its truth is.
-std::optional<rosin::failure> make(const options& given, const places& to, std::size_t shard, std::size_t shards) {
+std::optional<rosin::failure> make(const challenge_options& given, const challenge_folders& to, std::size_t shard,
+                                   std::size_t shards) {
   std::error_code error;
   for (const auto& folder : {to.rigs, to.truth, to.diagnoses})
     if (!fs::create_directories(folder, error) && error)
@@ -99,7 +100,7 @@ std::vector<fs::path> sorted_entries(const fs::path& folder) {
 }
 
 /// Diagnoses every rig of the folder that has no diagnosis yet; a rig that cannot be diagnosed is named and counts as wrong.
-void diagnose_all(const places& at, bool leave_out, const provenance& from, std::size_t shard, std::size_t shards) {
+void diagnose_all(const challenge_folders& at, bool leave_out, const provenance& from, std::size_t shard, std::size_t shards) {
   auto rigs = sorted_entries(at.rigs);
   std::erase_if(rigs, [](const fs::path& rig) { return !fs::exists(rig / "rig.toml"); });
   progress bar{"diagnosing", rigs.size()};
@@ -124,7 +125,7 @@ void diagnose_all(const places& at, bool leave_out, const provenance& from, std:
 }
 
 /// Reconstructs the strokes of every rig that has a diagnosis and whose true forces are there, as declared and as diagnosed.
-void reconstruct_all(const places& at, const provenance& from, std::size_t shard, std::size_t shards) {
+void reconstruct_all(const challenge_folders& at, const provenance& from, std::size_t shard, std::size_t shards) {
   std::error_code error;
   fs::create_directories(at.forces, error);
   const auto diagnoses = sorted_entries(at.diagnoses);
@@ -139,7 +140,7 @@ void reconstruct_all(const places& at, const provenance& from, std::size_t shard
   }
 }
 
-std::vector<rig_score> score_all(const places& at) {
+std::vector<rig_score> score_all(const challenge_folders& at) {
   std::vector<rig_score> out;
   for (const auto& file : sorted_entries(at.diagnoses)) {
     std::ifstream truth{at.truth / file.filename()}, said{file};
@@ -166,14 +167,14 @@ std::optional<rosin::failure> not_hideable(const std::vector<std::string>& names
   return std::nullopt;
 }
 
-exit_code run(const options& given, const provenance& from) {
+exit_code run(const challenge_options& given, const provenance& from) {
   std::size_t shard = 0, shards = 1;
   if (char slash = 0;
       !(std::istringstream{given.shard} >> shard >> slash >> shards) || slash != '/' || shard == 0 || shard > shards)
     return fail("--shard " + given.shard + ": K/N with K from 1 to N is needed", given.json);
   --shard;
   if (const auto why = not_hideable(given.hidden)) return fail("--effect " + why->message, given.json);
-  const places at{given.out, given.leave_out};
+  const challenge_folders at{given.out, given.leave_out};
   if (const auto why = make(given, at, shard, shards)) return fail(why->message, given.json);
   if (given.only_make) return exit_code::ok;
   diagnose_all(at, given.leave_out, from, shard, shards);
@@ -192,7 +193,7 @@ exit_code run(const options& given, const provenance& from) {
 }  // namespace
 
 void add_challenge(CLI::App& app, exit_code& result) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<challenge_options>();
   CLI::App* command = app.add_subcommand("challenge", "Hide physics in simulated rigs, diagnose them blind, and score");
   command->add_option("--out", given->out, "Folder: rigs/, truth/, diagnoses/ and the page challenge.md; what is there is used")
       ->required()

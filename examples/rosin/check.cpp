@@ -14,7 +14,7 @@ namespace tool {
 
 namespace {
 
-struct options {
+struct check_options {
   std::string rig;
   bool json = false, strict = false;
 };
@@ -84,7 +84,7 @@ tally count(const std::vector<rosin::take_check>& takes) {
   return out;
 }
 
-void print_result(const options& given, const provenance& from, const rosin::rig_folder& folder,
+void print_result(const check_options& given, const provenance& from, const rosin::rig_folder& folder,
                   const std::vector<rosin::take_check>& takes, const tally& found) {
   const auto assumed = rosin::values_of(folder.rig).assumed;
   if (given.json) {
@@ -105,7 +105,7 @@ void print_result(const options& given, const provenance& from, const rosin::rig
   std::cout << found.errors << " error(s), " << found.warnings << " warning(s)\n";
 }
 
-exit_code run(const options& given, provenance from) {
+exit_code run(const check_options& given, provenance from) {
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), given.json);
   std::vector<rosin::take_check> takes;
@@ -128,7 +128,7 @@ exit_code run(const options& given, provenance from) {
 }  // namespace
 
 void add_check(CLI::App& app, exit_code& result) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<check_options>();
   CLI::App* command = app.add_subcommand("check", "Find what is wrong with the recordings of a rig");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
   command->add_flag("--strict", given->strict, "Exit with 1 on warnings as well");

@@ -17,7 +17,7 @@ namespace tool {
 
 namespace {
 
-struct options {
+struct compare_options {
   std::string result, truth;
   std::optional<double> pass_Hz, stop_Hz, at_most;
   bool json = false;
@@ -32,7 +32,7 @@ std::string take_of(const rosin::table& t) {
 }
 
 /// The sampling rate, if both tables go through the same instants of one take.
-rosin::outcome<double> common_rate(const options& given, const rosin::table& result, const rosin::table& truth) {
+rosin::outcome<double> common_rate(const compare_options& given, const rosin::table& result, const rosin::table& truth) {
   const std::string one = take_of(result), other = take_of(truth);
   if (!one.empty() && !other.empty() && one != other)
     return rosin::failure{given.result + " is of take " + one + ", " + given.truth + " of take " + other + ": not the same take"};
@@ -52,7 +52,7 @@ rosin::outcome<double> common_rate(const options& given, const rosin::table& res
   return 1 / step;
 }
 
-rosin::outcome<std::vector<compared>> compare(const options& given, const rosin::table& result, const rosin::table& truth,
+rosin::outcome<std::vector<compared>> compare(const compare_options& given, const rosin::table& result, const rosin::table& truth,
                                               double rate_Hz, const rosin::band& window) {
   std::vector<compared> out;
   for (const char* name : {"force_N", "velocity_m_s", "torsion_velocity_m_s"}) {
@@ -94,7 +94,7 @@ void print_json(const std::vector<compared>& columns, const rosin::band& window,
   print(out);
 }
 
-exit_code run(const options& given, provenance from) {
+exit_code run(const compare_options& given, provenance from) {
   const auto result = rosin::read_csv(given.result);
   if (!result) return fail(result.error(), given.json);
   const auto truth = rosin::read_csv(given.truth);
@@ -116,7 +116,7 @@ exit_code run(const options& given, provenance from) {
 }  // namespace
 
 void add_compare(CLI::App& app, exit_code& result) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<compare_options>();
   CLI::App* command = app.add_subcommand("compare", "How far a reconstruction is from the truth of a simulation");
   command->add_option("RESULT", given->result, "Table of `rosin reconstruct`, as CSV")->required()->type_name("FILE.csv");
   command->add_option("TRUTH", given->truth, "Table of `rosin simulate`, or another reconstruction of the same take")

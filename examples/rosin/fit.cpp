@@ -14,7 +14,7 @@ namespace tool {
 
 namespace {
 
-struct options {
+struct fit_options {
   std::string rig, json_file, report;
   bool force = false, strict = false, pickup = false;
   header_options header;
@@ -59,7 +59,7 @@ void print_remarks(const std::vector<std::string>& warnings, const std::vector<s
   for (const auto& line : assumed) std::cout << "assumed: " << line << '\n';
 }
 
-void print_text(const rig_calibration& c) {
+void print_fit(const rig_calibration& c) {
   std::cout << c.title << ": " << set_of(c).from;
   if (!c.predicted.empty()) std::cout << "; " << c.predicted.size() << " held out and predicted";
   std::cout << '\n';
@@ -70,13 +70,13 @@ void print_text(const rig_calibration& c) {
   print_remarks(c.warnings, c.assumed, true);
 }
 
-exit_code outcome_of(bool incomplete, bool warnings, const options& given) {
+exit_code outcome_of(bool incomplete, bool warnings, const fit_options& given) {
   return incomplete || (warnings && given.strict) ? exit_code::finding : exit_code::ok;
 }
 
 /// Whatever the kind of calibration, where it goes.
 template <class Calibration, class Print>
-exit_code deliver(const Calibration& c, const options& given, const provenance& from, Print print_it) {
+exit_code deliver(const Calibration& c, const fit_options& given, const provenance& from, Print print_it) {
   if (!given.report.empty())
     if (const auto why = write_fit_report(given.report, given.force, c, from)) return fail(why->message);
   if (!given.json_file.empty())
@@ -87,7 +87,7 @@ exit_code deliver(const Calibration& c, const options& given, const provenance& 
   return outcome_of(c.incomplete, !c.warnings.empty(), given);
 }
 
-exit_code run(const options& given, provenance from) {
+exit_code run(const fit_options& given, provenance from) {
   const bool as_json = given.json_file == "-";
   for (const auto* file : {&given.json_file, &given.report, &given.header.path})
     if (!file->empty())
@@ -117,7 +117,7 @@ exit_code run(const options& given, provenance from) {
     said.emplace_back("header: the streaming reconstruction takes both ends for rigid; [terminations] is not in it");
   if (!given.header.path.empty())
     if (const auto why = write_header(given.header, given.force, set_of(*fitted), from, said)) return fail(why->message, as_json);
-  const exit_code done = deliver(*fitted, given, from, print_text);
+  const exit_code done = deliver(*fitted, given, from, print_fit);
   for (const auto& line : said) (as_json ? std::cerr : std::cout) << line << '\n';
   return done;
 }
@@ -125,7 +125,7 @@ exit_code run(const options& given, provenance from) {
 }  // namespace
 
 void add_fit(CLI::App& app, exit_code& result) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<fit_options>();
   CLI::App* command = app.add_subcommand("fit", "Calibrate string, contact and sensors from the plucks of a rig");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
   command

@@ -16,7 +16,7 @@ namespace tool {
 
 namespace {
 
-struct options {
+struct live_request {
   std::string rig, calibration, json_file;
   input_options input;
   recorder_options how;
@@ -27,7 +27,7 @@ struct options {
 };
 
 /// The take as it will be, and the rig with it; without a take, the rig as it is.
-rosin::outcome<rosin::rig> rig_of(const options& given, take_plan& take, std::optional<rig_file_writer>& files) {
+rosin::outcome<rosin::rig> rig_of(const live_request& given, take_plan& take, std::optional<rig_file_writer>& files) {
   if (given.no_take) return rosin::load_rig(given.rig, rosin::take_files::to_be_made);
   auto opened = rig_file_writer::open(given.rig, "");
   if (!opened) return rosin::failure{opened.error()};
@@ -64,7 +64,7 @@ recorder_hooks hooks_of(live_chain& chain, std::optional<sled>& moves, bool reco
   return hooks;
 }
 
-rosin::outcome<live_chain> chain_for(const options& given, const rosin::rig& rig, const take_plan& take,
+rosin::outcome<live_chain> chain_for(const live_request& given, const rosin::rig& rig, const take_plan& take,
                                      const rosin::frame_format& format) {
   for (const auto& c : rig.channels)
     if (c.index >= format.channels)
@@ -74,14 +74,14 @@ rosin::outcome<live_chain> chain_for(const options& given, const rosin::rig& rig
   return live_chain::design(rig, take, *calibration, format, given.live);
 }
 
-rosin::outcome<std::optional<sled>> sled_for(const options& given, const take_plan& take) {
+rosin::outcome<std::optional<sled>> sled_for(const live_request& given, const take_plan& take) {
   if (given.stroke.device.empty()) return std::optional<sled>{};
   auto opened = sled::open(given.stroke, take.speed_m_s.value_or(0));
   if (!opened) return rosin::failure{opened.error()};
   return std::optional<sled>{*std::move(opened)};
 }
 
-exit_code tell(const options& given, const recorder& from, const take_report& report, live_chain& chain,
+exit_code tell(const live_request& given, const recorder& from, const take_report& report, live_chain& chain,
                const live_state& state) {
   const std::uint64_t late_bytes = resident_bytes();
   auto bad = chain.finish();
@@ -102,7 +102,7 @@ exit_code tell(const options& given, const recorder& from, const take_report& re
   return !bad && !state.bad && report.problems.empty() && report.frames > 0 ? exit_code::ok : exit_code::finding;
 }
 
-exit_code run(const options& given) {
+exit_code run(const live_request& given) {
   stop_on_signals();
   const bool as_json = given.json_file == "-";
   take_plan take = given.take;
@@ -127,7 +127,7 @@ exit_code run(const options& given) {
 }  // namespace
 
 void add_live(CLI::App& app, exit_code& result) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<live_request>();
   CLI::App* command = app.add_subcommand("live", "Force and velocity under the bow while it moves, and the take besides");
   command->add_option("RIG", given->rig, "Folder of the rig; the take joins its rig.toml")->required();
   command->add_option("--calibration", given->calibration, "What `rosin fit --json` made of the plucks")

@@ -16,12 +16,6 @@ namespace {
 const std::vector<std::string> columns{"force_N",           "velocity_m_s",     "force_near_N", "force_far_N",
                                        "velocity_near_m_s", "velocity_far_m_s", "slips"};
 
-std::string figure(double x, const char* form = "%.4g") {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), form, x);
-  return text.data();
-}
-
 template <rosin::FrameSink Sink>
 frame_output output_of(Sink sink) {
   auto held = std::make_shared<Sink>(std::move(sink));
@@ -34,7 +28,7 @@ rosin::outcome<rosin::band> band_of(const live_options& how, double rate_Hz) {
                                                                                ? std::min(1.5 * how.pass_Hz, 0.5 * rate_Hz)
                                                                                : 0.45 * rate_Hz};
   if (limits.pass_Hz < limits.stop_Hz && limits.stop_Hz <= 0.5 * rate_Hz) return limits;
-  return rosin::failure{"--pass " + figure(limits.pass_Hz) + " --stop " + figure(limits.stop_Hz) +
+  return rosin::failure{"--pass " + in_digits(limits.pass_Hz, "%.4g") + " --stop " + in_digits(limits.stop_Hz, "%.4g") +
                         ": pass has to be below stop, and stop not above half the sampling rate"};
 }
 
@@ -81,8 +75,9 @@ void live_chain::place(const rosin::rig& rig, const calibration_set& set, rosin:
   at.at.delay_s[0] += shift * one_way;
   at.at.delay_s[1] -= shift * one_way;
   if (std::abs(shift) > 1e-9)
-    remarks_.push_back(rig.file + ": no pluck was made at the contact's position " + figure(declared) +
-                       ": the delays are those of " + figure(set.declared[nearest]) + ", moved by the declared distance");
+    remarks_.push_back(rig.file + ": no pluck was made at the contact's position " + in_digits(declared, "%.4g") +
+                       ": the delays are those of " + in_digits(set.declared[nearest], "%.4g") +
+                       ", moved by the declared distance");
 }
 
 void live_chain::set_ends(const rosin::rig& rig, const calibration_set& set, double rate_Hz) {
@@ -95,7 +90,7 @@ void live_chain::set_ends(const rosin::rig& rig, const calibration_set& set, dou
       remarks_.push_back("channel " + sensor.name + " is AC coupled: the mean of the force is not known");
     } else if (std::abs(set.offset_N[c].value) > 5 * set.offset_N[c].sd && std::abs(set.offset_N[c].value) > 1e-4) {
       ends_[c].offset_N = set.offset_N[c].value;
-      remarks_.push_back("offset of channel " + sensor.name + " = " + figure(1e3 * set.offset_N[c].value) +
+      remarks_.push_back("offset of channel " + sensor.name + " = " + in_digits(1e3 * set.offset_N[c].value, "%.4g") +
                          " mN, that of the plucks: taken out");
     }
   }
@@ -192,8 +187,8 @@ std::string live_chain::shows() const {
   const char* word = state == rosin::contact_state::slipping   ? "slips "
                      : state == rosin::contact_state::sticking ? "sticks"
                                                                : "      ";
-  return "F " + figure(latest_.force_N(), "%+.3f") + " N  v " + figure(latest_.velocity_m_s(), "%+.3f") + " m/s  " + word + " " +
-         std::to_string(watch_->slips());
+  return "F " + in_digits(latest_.force_N(), "%+.3f") + " N  v " + in_digits(latest_.velocity_m_s(), "%+.3f") + " m/s  " + word +
+         " " + std::to_string(watch_->slips());
 }
 
 json live_chain::to_json() const {
@@ -208,8 +203,8 @@ json live_chain::to_json() const {
 }
 
 std::string live_chain::summary() const {
-  return "late by " + std::to_string(latency_) + " frames (" + figure(1e3 * static_cast<double>(latency_) / rate_Hz_, "%.2f") +
-         " ms), " + std::to_string(known_) + " frames known, largest force " + figure(largest_N_) + " N" +
+  return "late by " + std::to_string(latency_) + " frames (" + in_digits(1e3 * static_cast<double>(latency_) / rate_Hz_, "%.2f") +
+         " ms), " + std::to_string(known_) + " frames known, largest force " + in_digits(largest_N_, "%.4g") + " N" +
          (speed_m_s_ > 0 ? ", " + std::to_string(watch_->slips()) + " slips" : "");
 }
 

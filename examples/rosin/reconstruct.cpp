@@ -16,7 +16,7 @@ namespace tool {
 
 namespace {
 
-struct options {
+struct reconstruct_options {
   std::string rig, take, calibration, model, report, json_file, slips;
   table_output output;
   take_options how;
@@ -24,7 +24,7 @@ struct options {
 };
 
 /// What can be refused before any work.
-std::optional<rosin::failure> cannot_deliver(const options& given) {
+std::optional<rosin::failure> cannot_deliver(const reconstruct_options& given) {
   if (!given.report.empty())
     if (auto why = cannot_draw()) return why;
   for (const auto* file : {&given.report, &given.json_file, &given.slips})
@@ -57,7 +57,7 @@ rosin::outcome<const rosin::take*> bowed_take(const rosin::rig& rig, const std::
 }
 
 /// From the plucks of the rig, or from a file.
-rosin::outcome<calibration_set> calibration_of(const options& given, const rosin::rig& rig, provenance& from,
+rosin::outcome<calibration_set> calibration_of(const reconstruct_options& given, const rosin::rig& rig, provenance& from,
                                                std::optional<rig_calibration>& fitted) {
   if (!given.calibration.empty()) {
     if (const auto why = from.add_input(given.calibration)) return *why;
@@ -70,7 +70,7 @@ rosin::outcome<calibration_set> calibration_of(const options& given, const rosin
   return set_of(*fitted);
 }
 
-std::optional<rosin::failure> deliver(const options& given, const take_reconstruction& r,
+std::optional<rosin::failure> deliver(const reconstruct_options& given, const take_reconstruction& r,
                                       const std::optional<rig_calibration>& fitted, const provenance& from) {
   if (given.output.path == "-") rosin::write_csv(std::cout, table_of(r, from));
   else if (!given.output.path.empty())
@@ -100,7 +100,7 @@ void print_text(std::ostream& out, const take_reconstruction& r) {
   for (const auto& line : r.assumed) out << "assumed: " << line << '\n';
 }
 
-exit_code run(const options& given, provenance from) {
+exit_code run(const reconstruct_options& given, provenance from) {
   const bool as_json = given.json_file == "-";
   if (const auto why = cannot_deliver(given)) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
@@ -140,7 +140,7 @@ exit_code run(const options& given, provenance from) {
 }  // namespace
 
 void add_reconstruct(CLI::App& app, exit_code& result) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<reconstruct_options>();
   CLI::App* command = app.add_subcommand("reconstruct", "Friction force and velocity under the bow, sample by sample");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
   command->add_option("--take", given->take, "Name of the bowed take")->required()->type_name("NAME");

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct options {
+struct simulate_options {
   std::string rig, out, truth, model, format = "csv";
   std::optional<std::uint64_t> seed;
   bool force = false, json = false;
@@ -45,7 +45,7 @@ bool lies_in(const fs::path& inner, const fs::path& outer) {
   return !way.empty() && *way.begin() != "..";
 }
 
-places find_places(const options& given, const rosin::rig& rig) {
+places find_places(const simulate_options& given, const rosin::rig& rig) {
   places out{given.out, fs::path{given.out} / "rig.toml", {}, {}, {}};
   fs::path truth = given.truth;
   if (truth.empty()) {
@@ -65,7 +65,7 @@ places find_places(const options& given, const rosin::rig& rig) {
 }
 
 /// Why nothing can be written there, found before the long work.
-std::string problem_with(const places& to, const options& given, const rosin::rig& rig) {
+std::string problem_with(const places& to, const simulate_options& given, const rosin::rig& rig) {
   if (whole_path(given.out) == whole_path(rig.folder.empty() ? "." : rig.folder))
     return given.out + ": is the folder of the rig file itself, which would be overwritten";
   if (lies_in(to.truth, to.folder)) return to.truth.string() + ": the truth must not lie in the folder of the recordings";
@@ -94,7 +94,7 @@ std::optional<rosin::failure> write_text(const fs::path& file, const std::string
   return rosin::write_file(file.string(), existing, [&](std::ostream& out) { out << text; });
 }
 
-std::optional<rosin::failure> write_takes(const options& given, const provenance& from, const simulation_plan& plan,
+std::optional<rosin::failure> write_takes(const simulate_options& given, const provenance& from, const simulation_plan& plan,
                                           const std::vector<simulated_take>& takes, const places& to) {
   for (std::size_t i = 0; i < takes.size(); ++i) {
     if (auto why = make_folder_for(to.recordings[i])) return why;
@@ -111,7 +111,7 @@ std::optional<rosin::failure> write_takes(const options& given, const provenance
 }
 
 /// Tables of admittance that the rig file names.
-std::optional<rosin::failure> write_tables_of_ends(const options& given, const rosin::rig& rig, const places& to) {
+std::optional<rosin::failure> write_tables_of_ends(const simulate_options& given, const rosin::rig& rig, const places& to) {
   for (const auto* end : {&rig.near, &rig.far}) {
     if (!*end || (*end)->kind != rosin::termination::form::table) continue;
     const auto text = read_text(rig.path_of((*end)->file));
@@ -123,7 +123,7 @@ std::optional<rosin::failure> write_tables_of_ends(const options& given, const r
 }
 
 /// The rig file last: whoever finds it finds all that it names.
-std::optional<rosin::failure> write_all(const options& given, const provenance& from, const rosin::rig& rig,
+std::optional<rosin::failure> write_all(const simulate_options& given, const provenance& from, const rosin::rig& rig,
                                         const simulation_plan& plan, const std::vector<simulated_take>& takes, const places& to,
                                         const std::string& declared) {
   if (auto why = write_tables_of_ends(given, rig, to)) return why;
@@ -204,7 +204,7 @@ rosin::outcome<std::string> declared_text(const std::string& file) {
 }
 
 /// From the rig file alone, or with the corrected model of a diagnosis.
-rosin::outcome<simulation_plan> make_plan(const options& given, const rosin::rig& rig, provenance& from) {
+rosin::outcome<simulation_plan> make_plan(const simulate_options& given, const rosin::rig& rig, provenance& from) {
   if (given.model.empty()) return plan_simulation(rig, given.seed);
   if (const auto why = from.add_input(given.model)) return *why;
   const auto model = read_diagnosed_model(given.model);
@@ -216,7 +216,7 @@ rosin::outcome<simulation_plan> make_plan(const options& given, const rosin::rig
   return plan;
 }
 
-exit_code run(const options& given, provenance from) {
+exit_code run(const simulate_options& given, provenance from) {
   const auto rig = rosin::load_rig(given.rig, rosin::take_files::to_be_made);
   if (!rig) return fail(rig.error(), given.json);
   if (const auto why = from.add_input(rig->file)) return fail(why->message, given.json);
@@ -241,7 +241,7 @@ exit_code run(const options& given, provenance from) {
 }  // namespace
 
 void add_simulate(CLI::App& app, exit_code& result) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<simulate_options>();
   CLI::App* command = app.add_subcommand("simulate", "Make the recordings that a rig file names, and the truth behind them");
   command->add_option("RIG", given->rig, "Rig file, or the folder that holds rig.toml")->required();
   command->add_option("--out", given->out, "Folder for the recordings and their rig.toml")->required()->type_name("FOLDER");

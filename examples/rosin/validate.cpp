@@ -18,7 +18,7 @@ namespace tool {
 
 namespace {
 
-struct options {
+struct validate_options {
   std::string file, print_schema;
   bool json = false;
 };
@@ -52,7 +52,7 @@ std::vector<violation> violations_of(const json_image& image) {
   return out;
 }
 
-exit_code run(const options& given, provenance from) {
+exit_code run(const validate_options& given, provenance from) {
   if (const auto why = from.add_input(given.file)) return fail(why->message, given.json);
   const auto image = read_json_image(given.file);
   if (!image) return fail(image.error(), given.json);
@@ -79,7 +79,7 @@ exit_code print_schema(const std::string& name) {
 }  // namespace
 
 void add_validate(CLI::App& app, exit_code& result) {
-  auto given = std::make_shared<options>();
+  auto given = std::make_shared<validate_options>();
   CLI::App* command = app.add_subcommand("validate", "Check a file against the JSON Schema of its format");
   auto* file =
       command->add_option("FILE", given->file, "A rig (.toml), a reconstruction (.csv), a diagnosis or a calibration (.json)");
