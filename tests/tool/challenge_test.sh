@@ -95,7 +95,9 @@ expect 0 compare forces/bow-1.csv forces/truth/challenge-700000.bow-1.csv --at-m
 # Of two plucks one alone does not tell stretching from the pitch: both are fitted, and that is said.
 expect 0 challenge --out pair --seed 101002 --count 1 --effect tension-modulation --only-make
 perl -0pi -e 's/\[\[take\]\]\nname = "pluck-3".*?(?=\[\[take\]\])//s' pair/rigs/*/rig.toml
-expect 0 diagnose pair/rigs/* $few $no_contact --json pair.json
+no_other=$(without point-damper sensor-resonance resistive-end massive-end clamped-end rattle dropouts clock-drift tension-drift air-loss \
+  finite-pluck-width pluck-position)
+expect 0 diagnose pair/rigs/* $few $no_contact $no_other --json pair.json
 says "two plucks only"
 perl -MJSON::PP -e '
   local $/;
@@ -109,7 +111,7 @@ is_silent_about "sensor noise 0,"
 is_silent_about "another rig file"
 # A pluck that the rig file marks as held out is not fitted for all that.
 perl -0pi -e 's/(name = "pluck-2")/$1\nhold_out = true/' pair/rigs/*/rig.toml
-expect 0 diagnose pair/rigs/* $few $no_contact --json one-held.json
+expect 0 diagnose pair/rigs/* $few $no_contact $no_other --json one-held.json
 is_silent_about "noise is slow"
 perl -MJSON::PP -e '
   local $/;
