@@ -15,10 +15,8 @@ constexpr std::array parameter_names{"delay_near_s",    "delay_far_s",     "stif
                                      "inverse_quality", "loss_internal_s", "ln_gain_ratio"};
 static_assert(parameter_names.size() == rosin::waveform_parameters);
 
-json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
-json with_sd(double value, double sd) { return {{"value", number(value)}, {"sd", number(sd)}}; }
 json with_both(const doubtful& d) {
-  return {{"value", number(d.value)}, {"sd", number(d.sd)}, {"systematic_sd", number(d.systematic_sd)}};
+  return {{"value", number_or_null(d.value)}, {"sd", number_or_null(d.sd)}, {"systematic_sd", number_or_null(d.systematic_sd)}};
 }
 json or_null(const std::optional<doubtful>& d) { return d ? with_both(*d) : json(nullptr); }
 
@@ -27,7 +25,7 @@ json matrix(const Matrix& m) {
   json rows = json::array();
   for (Eigen::Index r = 0; r < m.rows(); ++r) {
     json row = json::array();
-    for (Eigen::Index c = 0; c < m.cols(); ++c) row.push_back(number(m(r, c)));
+    for (Eigen::Index c = 0; c < m.cols(); ++c) row.push_back(number_or_null(m(r, c)));
     rows.push_back(row);
   }
   return rows;
@@ -61,9 +59,9 @@ json channel_json(const rig_calibration& c, std::size_t channel) {
   const auto e = gain_errors_of(c);
   const double gain = std::exp(c.fit.value[p]);
   return {{"gain", with_both({gain, gain * e.ratio_sd / 2, gain * e.scale_sd})},
-          {"noise_N", number(c.fit.noise_N[channel])},
+          {"noise_N", number_or_null(c.fit.noise_N[channel])},
           {"offset_N", with_sd(c.offset_N[channel].value, c.offset_N[channel].sd)},
-          {"ac_coupled_Hz", number(c.ac_coupled_Hz[channel])}};
+          {"ac_coupled_Hz", number_or_null(c.ac_coupled_Hz[channel])}};
 }
 
 /// Modes that were fitted; masses in kg where Z is known.
@@ -114,14 +112,14 @@ json takes_json(const rig_calibration& c) {
                    {"release_s", both(layout::release)},
                    {"offset_near_N", both(layout::offset_near)},
                    {"offset_far_N", both(layout::offset_far)},
-                   {"residual", number(c.fit.residual_ratio[t])}});
+                   {"residual", number_or_null(c.fit.residual_ratio[t])}});
   }
   for (const auto& p : c.predicted)
     out.push_back({{"name", p.name},
                    {"role", "held-out"},
                    {"force_N", with_sd(p.strength_N, std::numeric_limits<double>::quiet_NaN())},
                    {"release_s", with_sd(p.release_s, std::numeric_limits<double>::quiet_NaN())},
-                   {"residual", number(p.residual_ratio)}});
+                   {"residual", number_or_null(p.residual_ratio)}});
   return out;
 }
 
@@ -129,14 +127,14 @@ json fit_json(const rig_calibration& c) {
   json names = json::array(), values = json::array(), sds = json::array();
   for (Eigen::Index p = 0; p < c.fit.layout.size(); ++p) {
     names.push_back(c.fit.layout.name(p));
-    values.push_back(number(c.fit.value[p]));
-    sds.push_back(number(c.fit.sd[p]));
+    values.push_back(number_or_null(c.fit.value[p]));
+    sds.push_back(number_or_null(c.fit.sd[p]));
   }
   return {{"parameters", names},
           {"value", values},
           {"sd", sds},
           {"covariance", matrix(c.fit.covariance)},
-          {"misfit", number(c.fit.misfit)},
+          {"misfit", number_or_null(c.fit.misfit)},
           {"converged", c.fit.converged},
           {"iterations", c.fit.iterations},
           {"band_Hz", {c.fit.limits.pass_Hz, c.fit.limits.stop_Hz}},
@@ -193,8 +191,8 @@ json to_json(const rig_calibration& c, const provenance& from) {
   out["channels"] = {{"near", channel_json(c, 0)}, {"far", channel_json(c, 1)}};
   out["gain_ratio"] =
       with_sd(c.at.front().gain[0] / c.at.front().gain[1], c.at.front().gain[0] / c.at.front().gain[1] * e.ratio_sd);
-  out["common_scale_relative_sd"] = number(e.scale_sd);
-  out["impedance_relative_sd"] = number(c.at.front().impedance_relative_sd);
+  out["common_scale_relative_sd"] = number_or_null(e.scale_sd);
+  out["impedance_relative_sd"] = number_or_null(c.at.front().impedance_relative_sd);
   out["waveform_parameters"] = parameter_names;
   out["positions"] = json::array();
   for (std::size_t i = 0; i < c.at.size(); ++i) {

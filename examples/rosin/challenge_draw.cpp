@@ -11,9 +11,7 @@ namespace tool {
 
 namespace {
 
-using source = rosin::gaussian_source;
-
-hidden_effect on_the_string(const std::string& name, challenge_rig& r, source& s, double k) {
+hidden_effect on_the_string(const std::string& name, challenge_rig& r, rosin::gaussian_source& s, double k) {
   const double z = r.base.rig.string.impedance_Ns_m();
   if (name == "bending-stiffness") {
     r.declares_stiffness = false;
@@ -54,7 +52,7 @@ hidden_effect on_the_string(const std::string& name, challenge_rig& r, source& s
            {"mass_kg", r.burden.supports[e].mass_kg}}};
 }
 
-hidden_effect in_the_sensors(const std::string& name, challenge_rig& r, source& s, double k) {
+hidden_effect in_the_sensors(const std::string& name, challenge_rig& r, rosin::gaussian_source& s, double k) {
   if (name == "ac-coupling") {
     const double corner = k * evenly_in_log(s, 2, 20);
     for (auto& c : r.converters) c.ac_coupled_Hz = corner;
@@ -87,7 +85,7 @@ hidden_effect in_the_sensors(const std::string& name, challenge_rig& r, source& 
   return {name, "", name_of_side(c), {{"frequency_Hz", r.faults.resonance_Hz[c]}, {"q", r.faults.resonance_q[c]}}};
 }
 
-hidden_effect under_the_bow(const std::string& name, challenge_rig& r, source& s, double k) {
+hidden_effect under_the_bow(const std::string& name, challenge_rig& r, rosin::gaussian_source& s, double k) {
   if (name == "slow-release") {
     r.release_duration_s = std::sqrt(k) * evenly_in_log(s, 15e-6, 60e-6);
     return {name, "", "", {{"duration_s", r.release_duration_s}}};
@@ -135,7 +133,7 @@ hidden_effect under_the_bow(const std::string& name, challenge_rig& r, source& s
 }
 
 /// Strings besides the E: the declared values stay as far off as they were drawn.
-void draw_other_string(const std::vector<double>& pitch_Hz, challenge_rig& r, source& s) {
+void draw_other_string(const std::vector<double>& pitch_Hz, challenge_rig& r, rosin::gaussian_source& s) {
   auto& t = r.base.rig.string;
   auto& d = r.base.declared.string;
   const double tension = s.uniform(0.6, 1.25), one = t.fundamental_Hz;
@@ -146,7 +144,7 @@ void draw_other_string(const std::vector<double>& pitch_Hz, challenge_rig& r, so
   r.base.law = rosin::velocity_curve<rosin::two_exponential_curve<double>>{r.base.steady_friction};
 }
 
-void hide(const std::string& name, challenge_rig& r, source& s, double k) {
+void hide(const std::string& name, challenge_rig& r, rosin::gaussian_source& s, double k) {
   if (auto further = hidden_on_request(name, r, s, k)) return r.effects.push_back(*std::move(further));
   const auto& all = hideable();
   const auto index = std::find(all.begin(), all.end(), name) - all.begin();
@@ -193,7 +191,7 @@ challenge_rig draw_challenge(const challenge_choice& choice) {
   challenge_rig r;
   r.name = "challenge-" + std::to_string(choice.seed);
   r.base = rosin::draw_rig(choice.seed);
-  source s{choice.seed ^ 0x9e3779b97f4a7c15ULL};
+  rosin::gaussian_source s{choice.seed ^ 0x9e3779b97f4a7c15ULL};
   draw_other_string(choice.pitch_Hz, r, s);
   r.base.rig.damping = s.uniform() < 0.5 ? rosin::damping_convention::viscous : rosin::damping_convention::kelvin_voigt;
   r.bowed = r.base.rig;

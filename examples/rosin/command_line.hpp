@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -20,6 +21,11 @@ namespace tool {
 enum class exit_code { ok = 0, finding = 1, bad_input = 2 };
 
 using json = nlohmann::ordered_json;
+
+/// A number, or null where it is not known.
+inline json number_or_null(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
+/// A value and its standard deviation.
+inline json with_sd(double value, double sd) { return {{"value", number_or_null(value)}, {"sd", number_or_null(sd)}}; }
 
 /// Why nothing was done: each line of the message to standard error; as JSON on standard output if asked for.
 exit_code fail(const std::string& message, bool as_json = false);

@@ -10,8 +10,6 @@ namespace tool {
 
 namespace {
 
-json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
-
 json with_interval(const diagnosed_value& v) {
   json out{{"value", v.value}};
   if (std::isfinite(v.sd) && v.sd > 0) out["ci95"] = interval_of(v);
@@ -92,8 +90,8 @@ json to_json(const rig_diagnosis& d, const provenance& from) {
   if (const auto& left = d.left_in_strokes)
     out["mismatch"]["strokes"] = {{"metric", left->statistic},
                                   {"take", left->take.empty() ? json(nullptr) : json(left->take)},
-                                  {"left", number(left->size)},
-                                  {"floor", number(left->floor)}};
+                                  {"left", number_or_null(left->size)},
+                                  {"floor", number_or_null(left->floor)}};
   out["missing"] = json::array();
   for (const auto& m : d.missing) out["missing"].push_back(to_json(m));
   out["ranking"] = json::array();
@@ -107,9 +105,9 @@ json to_json(const rig_diagnosis& d, const provenance& from) {
       out["calibration"][v.name] = std::isfinite(v.sd) ? json{{"value", v.value}, {"sd", v.sd}} : json{{"value", v.value}};
   out["fit"] = {{"metric", d.metric},
                 {"held_out", d.held_out},
-                {"before", number(d.before)},
-                {"after", d.after ? number(*d.after) : json(nullptr)},
-                {"noise_floor", number(d.noise_floor)}};
+                {"before", number_or_null(d.before)},
+                {"after", d.after ? number_or_null(*d.after) : json(nullptr)},
+                {"noise_floor", number_or_null(d.noise_floor)}};
   out["assumed"] = d.assumed;
   out["warnings"] = d.warnings;
   out["provenance"] = from.to_json();

@@ -14,6 +14,8 @@ namespace {
 
 using rosin::bow_version;
 
+std::string nine_digits(double x) { return in_digits(x, "%.9g"); }
+
 /// All bits of a number, as a literal of its type.
 std::string literal(double x, bool in_double) {
   return in_double ? in_digits(x, "%a") : in_digits(static_cast<double>(static_cast<float>(x)), "%a") + "F";
@@ -47,12 +49,12 @@ struct header_design {
 rosin::outcome<std::size_t> position_of(const header_options& given, const calibration_set& set) {
   std::string known;
   for (std::size_t i = 0; i < set.declared.size(); ++i) {
-    known += (i == 0 ? "" : ", ") + in_digits(set.declared[i], "%.9g");
+    known += (i == 0 ? "" : ", ") + nine_digits(set.declared[i]);
     if (std::abs(set.declared[i] - given.position) < 1e-9 || (given.position < 0 && set.declared.size() == 1)) return i;
   }
   if (given.position < 0)
     return rosin::failure{"--emit-header: the plucks are at " + known + "; --emit-position says which is meant"};
-  return rosin::failure{"--emit-position " + in_digits(given.position, "%.9g") + ": no pluck there; the plucks are at " + known};
+  return rosin::failure{"--emit-position " + nine_digits(given.position) + ": no pluck there; the plucks are at " + known};
 }
 
 /// As `rosin reconstruct` does: no string stiffens below zero, and none loses most of a wave on its way.
@@ -77,12 +79,12 @@ rosin::outcome<header_design> design(const header_options& given, const calibrat
   d.rate_Hz = given.rate_Hz > 0 ? given.rate_Hz : set.rate_Hz;
   d.limits = {given.pass_Hz > 0 ? given.pass_Hz : 0.30 * d.rate_Hz, given.stop_Hz > 0 ? given.stop_Hz : 0.45 * d.rate_Hz};
   const std::string band =
-      "--emit-pass " + in_digits(d.limits.pass_Hz, "%.9g") + " --emit-stop " + in_digits(d.limits.stop_Hz, "%.9g") + ": ";
+      "--emit-pass " + nine_digits(d.limits.pass_Hz) + " --emit-stop " + nine_digits(d.limits.stop_Hz) + ": ";
   if (!(d.limits.pass_Hz >= set.fundamental_Hz && d.limits.stop_Hz - d.limits.pass_Hz >= set.fundamental_Hz &&
         2 * d.limits.stop_Hz <= d.rate_Hz))
     return rosin::failure{
         band + "at least the fundamental for the first and for the way from it to the second, which ends at half the rate of " +
-        in_digits(d.rate_Hz, "%.9g") + " Hz"};
+        nine_digits(d.rate_Hz) + " Hz"};
   if (!std::isfinite(d.at.at.impedance_Ns_m))
     return rosin::failure{
         "--emit-header: length_m and tension_N (or impedance_Ns_m) are needed: without the wave impedance there is no velocity "
@@ -93,7 +95,7 @@ rosin::outcome<header_design> design(const header_options& given, const calibrat
       d.offset_N[c] = set.offset_N[c].value;
     if (d.at.ac_coupled_Hz[c] > 0)
       said.push_back(std::string("header: channel ") + (c == 0 ? "near" : "far") + " is AC coupled at " +
-                     in_digits(d.at.ac_coupled_Hz[c], "%.9g") + " Hz; that is not undone there");
+                     nine_digits(d.at.ac_coupled_Hz[c]) + " Hz; that is not undone there");
   }
   d.plan = rosin::plan_passages(d.at.at, d.at.gain, d.limits, d.rate_Hz, given.error, given.version);
   return d;
@@ -106,10 +108,9 @@ const char* name_of(bow_version version) {
 std::string story(const header_design& d, const header_options& given, const calibration_set& set, const provenance& from) {
   std::string out =
       comment("Coefficients of rosin's streaming reconstruction, written by rosin " ROSIN_VERSION_STRING ". Not to be edited.");
-  out += "//\n" + comment("contact at " + in_digits(d.declared, "%.9g") + " of the length, " + set.from);
-  out += comment("version: " + std::string(name_of(given.version)) + ", band: flat to " + in_digits(d.limits.pass_Hz, "%.9g") +
-                 " Hz, nothing from " + in_digits(d.limits.stop_Hz, "%.9g") +
-                 " Hz, error in the band: " + in_digits(d.error, "%.9g"));
+  out += "//\n" + comment("contact at " + nine_digits(d.declared) + " of the length, " + set.from);
+  out += comment("version: " + std::string(name_of(given.version)) + ", band: flat to " + nine_digits(d.limits.pass_Hz) +
+                 " Hz, nothing from " + nine_digits(d.limits.stop_Hz) + " Hz, error in the band: " + nine_digits(d.error));
   for (const auto& line : from.comment_lines()) out += comment(line);
   return out + "//\n";
 }
@@ -137,8 +138,8 @@ std::string text_of(const header_design& d, const header_options& given, const c
   out += "using sample = " + type + ";\n";
   out += "using reconstructor = rosin::passage_reconstructor<sample, " + std::to_string(d.plan.longest()) + ", " +
          std::to_string(line) + ", " + std::to_string(d.plan.half_length()) + ">;\n\n";
-  out += "inline constexpr sample sample_rate_Hz = " + literal(d.rate_Hz, given.in_double) + ";  // " +
-         in_digits(d.rate_Hz, "%.9g") + "\n";
+  out += "inline constexpr sample sample_rate_Hz = " + literal(d.rate_Hz, given.in_double) + ";  // " + nine_digits(d.rate_Hz) +
+         "\n";
   out += "/// To be taken from the recorded forces first: what the sensors said at rest.\n";
   out += "inline constexpr rosin::termination_frame<sample> offset{" + literal(d.offset_N[0], given.in_double) + ", " +
          literal(d.offset_N[1], given.in_double) + "};\n";
@@ -192,8 +193,7 @@ std::optional<rosin::failure> write_header(const header_options& given, bool for
   for (std::size_t p = 0; p < 4; ++p) taps += d->plan.arrival_taps(p).size();
   said.push_back("header " + given.path + ": " + std::to_string(taps) + " taps, late by " +
                  std::to_string(d->plan.reach_ahead()) + " frames (" +
-                 in_digits(1e3 * d->plan.reach_ahead() / d->rate_Hz, "%.3g") + " ms) at " + in_digits(d->rate_Hz, "%.9g") +
-                 " Hz");
+                 in_digits(1e3 * d->plan.reach_ahead() / d->rate_Hz, "%.3g") + " ms) at " + nine_digits(d->rate_Hz) + " Hz");
   return std::nullopt;
 }
 

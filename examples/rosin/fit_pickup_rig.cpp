@@ -38,8 +38,7 @@ bool rings(rosin::quantity what) {
          what == rosin::quantity::string_displacement || what == rosin::quantity::sound;
 }
 
-json with_sd(double value, double sd) { return {{"value", value}, {"sd", std::isfinite(sd) ? json(sd) : json(nullptr)}}; }
-json with_sd(const std::optional<measured_value>& m) { return m ? with_sd(m->value, m->sd) : json(nullptr); }
+json or_null(const std::optional<measured_value>& m) { return m ? with_sd(m->value, m->sd) : json(nullptr); }
 
 json partials_json(const rosin::pickup_fit& fit) {
   json out = json::array();
@@ -115,11 +114,11 @@ json to_json(const pickup_calibration& c, const provenance& from) {
          {"loss_scatter", f.loss.relative_scatter},
          {"frequency_scatter_Hz", f.scatter_Hz},
          {"pitch_glide", with_sd(f.glide.relative, f.glide_sd)},
-         {"tension_N", with_sd(r.string.tension_N)},
-         {"impedance_Ns_m", with_sd(r.string.impedance_Ns_m)},
-         {"bending_stiffness_Nm2", with_sd(r.string.bending_stiffness_Nm2)},
-         {"expected_inharmonicity", with_sd(r.string.expected_inharmonicity)},
-         {"diameter_from_sound_m", with_sd(r.string.diameter_from_sound_m)},
+         {"tension_N", or_null(r.string.tension_N)},
+         {"impedance_Ns_m", or_null(r.string.impedance_Ns_m)},
+         {"bending_stiffness_Nm2", or_null(r.string.bending_stiffness_Nm2)},
+         {"expected_inharmonicity", or_null(r.string.expected_inharmonicity)},
+         {"diameter_from_sound_m", or_null(r.string.diameter_from_sound_m)},
          {"partials", partials_json(f)}});
   }
   out["warnings"] = c.warnings;

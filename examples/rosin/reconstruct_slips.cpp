@@ -170,7 +170,6 @@ rosin::table table_of(const take_slips& s, const take_reconstruction& r, const p
 json to_json(const take_slips& s) {
   if (s.loops.empty()) return nullptr;
   const auto& v = s.verdict;
-  const auto number_or_null = [](double x) { return std::isfinite(x) ? json(x) : json(nullptr); };
   return {{"slips", s.loops.size()},
           {"counted", v.loops},
           {"sense", name_of(v.sense)},

@@ -51,8 +51,6 @@ double slipping_fraction(const take_reconstruction& r, rosin::sample_range in) {
   return count / static_cast<double>(std::max<std::size_t>(1, in.end - in.begin));
 }
 
-json number(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
-
 json tuning_json(const take_reconstruction& r) {
   if (!r.result.tuning) return nullptr;
   const auto& t = *r.result.tuning;
@@ -226,13 +224,13 @@ json to_json(const take_reconstruction& r, const provenance& from) {
                   {"velocity", r.delta_velocity},
                   {"time_against_frequency_domain", r.domains_differ ? json(*r.domains_differ) : json(nullptr)}};
   const auto& sd = r.result.sd;
-  out["force"] = {{"random_sd_N", number(std::sqrt(mean_square(r.force_sd_N, r.known)))},
+  out["force"] = {{"random_sd_N", number_or_null(std::sqrt(mean_square(r.force_sd_N, r.known)))},
                   {"noise_sd_N", sd.force_noise_N},
                   {"model_sd_N", sd.force_model_N},
                   {"scale_relative_sd", sd.force_scale},
-                  {"steady_minimum_N", number(low)},
-                  {"steady_maximum_N", number(high)}};
-  out["velocity"] = {{"random_sd_m_s", number(std::sqrt(mean_square(r.velocity_sd_m_s, r.known)))},
+                  {"steady_minimum_N", number_or_null(low)},
+                  {"steady_maximum_N", number_or_null(high)}};
+  out["velocity"] = {{"random_sd_m_s", number_or_null(std::sqrt(mean_square(r.velocity_sd_m_s, r.known)))},
                      {"noise_sd_m_s", sd.velocity_noise_m_s},
                      {"model_sd_m_s", sd.velocity_model_m_s},
                      {"scale_relative_sd", sd.velocity_scale}};
