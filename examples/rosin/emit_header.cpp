@@ -24,7 +24,7 @@ std::string literal(double x, bool in_double) {
 std::string list(const std::vector<double>& numbers, bool in_double) {
   std::string out, line = "\n     ";
   for (const double x : numbers) {
-    const std::string next = " " + literal(x, in_double) + ",";
+    const std::string next = std::string{" "}.append(literal(x, in_double)) + ",";
     if (line.size() + next.size() > 120) out += std::exchange(line, "\n     ");
     line += next;
   }
