@@ -100,7 +100,8 @@ inline std::vector<std::string> unidentified(const Eigen::MatrixXd& data_hessian
   return names;
 }
 
-inline double worst(const pluck_fit_result& result) {
+template <class Assessed>
+double worst(const Assessed& result) {
   return *std::max_element(result.residual_ratio.begin(), result.residual_ratio.end());
 }
 
@@ -165,10 +166,12 @@ inline bool may_be_causal(const std::vector<pluck_take>& takes, const pluck_gues
                         true, result.noise_N);
   int iterations = 0;
   descend(problem, layout, result.value, value, 6, 1.0, iterations);
-  return problem.assess(value).misfit - 1 < (result.misfit - 1) / 2;
+  const assessment seen = problem.assess(value);
+  return seen.misfit - 1 < (result.misfit - 1) / 2 || worst(seen) < worst(result) / 2;
 }
 
-/// The same fit with loss that may disperse, where that follows more of the record, or as much and leaves a third of the excess.
+/// The same fit with loss that may disperse, where that follows more of the record, or as much and leaves a third of the excess at
+/// the partials or of the signal.
 inline void try_causality(const std::vector<pluck_take>& takes, const pluck_guess& guess, pluck_options options,
                           const Eigen::VectorXd& begin, pluck_fit_result& result) {
   if (options.causality || !result.more_than_noise) return;
@@ -177,8 +180,8 @@ inline void try_causality(const std::vector<pluck_take>& takes, const pluck_gues
   pluck_fit_result other;
   other.layout = pluck_layout(takes, options), other.limits = result.limits, other.value = begin;
   approach_and_finish(takes, guess, options, other);
-  const bool fits = other.horizon_periods > result.horizon_periods ||
-                    (other.horizon_periods == result.horizon_periods && other.misfit - 1 < (result.misfit - 1) / 3);
+  const bool less = other.misfit - 1 < (result.misfit - 1) / 3 || worst(other) < worst(result) / 3;
+  const bool fits = other.horizon_periods > result.horizon_periods || (other.horizon_periods == result.horizon_periods && less);
   if (fits && is_causal(other.value[pluck_layout::causality], other.sd[pluck_layout::causality])) result = std::move(other);
 }
 

@@ -63,7 +63,8 @@ private:
 ///
 /// What loses and is causal disperses: by Kramers and Kronig d ln c / d ln f = 1 / (pi Q) for a constant Q, and what the air
 /// takes comes with as much inertia; the parts with f and 1/f disperse in second order only. Modes that are damped one by one
-/// do not disperse at all; `causality` says how much of it there is.
+/// do not disperse at all; `causality` says how much of it there is. Where there is any, what is uneven is due to relaxations and
+/// disperses in full: a string that loses by half to these is uneven by half as much.
 struct loss_law {
   double quality = std::numeric_limits<double>::infinity();  ///< > 0; infinity: no constant part
   double internal_s = 0;                                     ///< s, >= 0
@@ -88,7 +89,7 @@ struct loss_law {
     if (causality == 0 || f == 0) return 0;
     const double air = air_sqrt_Hz / 2 * (1 / std::sqrt(reference_Hz) - 1 / std::sqrt(f));
     const double u = std::log(f / reference_Hz), more = uneven.is_there() ? uneven.quickening(u) / 2 : 0.0;
-    return causality * ((u / pi + more) / quality + air);
+    return causality * (u / pi / quality + air) + more / quality;
   }
 
   /// d ln c / d ln f, what quickening grows by.
@@ -97,7 +98,7 @@ struct loss_law {
     const double f = std::abs(frequency_Hz);
     if (causality == 0 || f == 0) return 0;
     const double more = uneven.is_there() ? uneven.dispersion(std::log(f / reference_Hz)) / 2 : 0.0;
-    return causality * ((1 / pi + more) / quality + air_sqrt_Hz / (4 * std::sqrt(f)));
+    return causality * (1 / pi / quality + air_sqrt_Hz / (4 * std::sqrt(f))) + more / quality;
   }
 };
 

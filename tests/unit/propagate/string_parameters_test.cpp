@@ -84,6 +84,19 @@ TEST_CASE("a loss that is uneven: relaxations whose times lie apart are one, and
   }
 }
 
+TEST_CASE("a string half of whose loss relaxes disperses by half as much, evenly and unevenly") {
+  rosin::loss_law all{.quality = 300, .causality = 1, .reference_Hz = 200}, half = all;
+  all.uneven.cosine = {0.02, -0.01, 0.03, 0.01}, all.uneven.sine = {0.01, 0.02, -0.02, 0.005};
+  half.causality = 0.5;
+  for (std::size_t i = 0; i < rosin::loss_unevenness::orders; ++i)  // half of the loss is even
+    half.uneven.cosine[i] = all.uneven.cosine[i] / 2, half.uneven.sine[i] = all.uneven.sine[i] / 2;
+  for (const double f : {150.0, 230.0, 900.0, 7000.0}) {
+    CHECK(half.inverse_q(f) == test::approx((all.inverse_q(f) + 1.0 / 300) / 2));
+    CHECK(half.quickening(f) == test::approx(all.quickening(f) / 2));
+    CHECK(half.dispersion(f) == test::approx(all.dispersion(f) / 2));
+  }
+}
+
 TEST_CASE("without causality no loss disperses") {
   const rosin::loss_law loss{.quality = 300, .air_sqrt_Hz = 0.01, .reference_Hz = 200};
   CHECK(loss.quickening(5000) == 0);
