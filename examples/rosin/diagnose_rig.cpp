@@ -28,6 +28,20 @@ double smear_of(double duration_s, double rate_Hz) {
 /// An effect's name in its id, which goes on with the place or the variant.
 std::string bare(const std::string& id) { return id.substr(0, id.find_first_of("@ ")); }
 
+/// Mean and standard deviation of what every take has its own of, where that is never zero.
+std::optional<std::array<double, 2>> mean_of_takes(const rosin::pluck_diagnosis& p, std::size_t which) {
+  const auto& parameters = p.best.effects[which].parameters;
+  if (parameters.empty() || parameters[0].take < 0 || !(parameters[0].low > 0)) return {};
+  const std::vector<double> all = p.best.values_of(which);
+  Eigen::Index at = p.best.first_of(which);
+  const auto n = static_cast<double>(all.size());
+  double sum = 0, square = 0;
+  for (const double v : all) sum += v / n, square += std::pow(p.best.sd[at++] / n, 2);
+  double apart = 0;
+  for (const double v : all) apart += (v - sum) * (v - sum) / n;
+  return {{sum, std::sqrt(square + apart / n)}};
+}
+
 missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, const rosin::rig_values& values) {
   const rosin::pluck_effect& e = p.best.effects[which];
   missing_effect m;
@@ -43,22 +57,23 @@ missing_effect described(const rosin::pluck_diagnosis& p, std::size_t which, con
           std::find(m.indistinguishable_from.begin(), m.indistinguishable_from.end(), name) == m.indistinguishable_from.end())
         m.indistinguishable_from.push_back(name);
     }
-  Eigen::Index at = p.data.layout.size();
-  for (std::size_t i = 0; i < which; ++i) at += static_cast<Eigen::Index>(p.best.effects[i].parameters.size());
+  Eigen::Index at = p.best.first_of(which);
   std::array<double, 2> hum{}, hum_sd{};
   for (std::size_t i = 0; i < e.parameters.size(); ++i, ++at) {
     const rosin::effect_parameter& q = e.parameters[i];
     const double v = rosin::to_physical(q, p.best.value[at]), sd = p.best.sd[at] * (q.logarithmic ? v : 1);
-    if (q.late) continue;
+    if (q.late || (q.take >= 0 && q.low > 0)) continue;
     if (q.name == "amplitude") {
       if (const std::size_t of_first = i - 1; of_first < 4)
         hum[of_first / 2] = std::hypot(hum[of_first / 2], v), hum_sd[of_first / 2] = sd;  // the fundamental in the first take
       continue;
     }
     m.parameters.push_back(in_si(q.name, v, sd, values, p.best.value[0]));
-    if (auto& last_one = m.parameters.back(); q.name == "duration_s")
-      last_one.sd = std::hypot(sd, smear_of(v, p.data.takes.front().rate_Hz));
   }
+  if (const auto own = mean_of_takes(p, which))
+    m.parameters.push_back(in_si(e.parameters[0].name, own->at(0), own->at(1), values, p.best.value[0]));
+  for (auto& q : m.parameters)
+    if (q.name == "duration_s") q.sd = std::hypot(q.sd, smear_of(q.value, p.data.takes.front().rate_Hz));
   if (e.name == "mains-hum") {
     const std::size_t c = hum[1] > hum[0] ? 1 : 0;
     const double gain = std::exp(p.best.value[rosin::pluck_layout::gain_near + static_cast<int>(c)]);
@@ -99,7 +114,9 @@ void add_place(const rosin::acting_place& place, rig_diagnosis& d) {
 }
 
 void take_over(const rosin::pluck_diagnosis& p, const rosin::rig_values& values, rig_diagnosis& d) {
-  for (std::size_t i = 0; i < p.best.effects.size(); ++i) d.missing.push_back(described(p, i, values));
+  for (std::size_t i = 0; i < p.best.effects.size(); ++i)
+    if (missing_effect m = described(p, i, values); !p.is_ordinary(i)) d.missing.push_back(std::move(m));
+    else d.assumed.push_back("what any wire does, and has no name: " + m.statement);
   for (const auto& h : p.ranking) d.ranking.push_back({bare(h.ids), h.log_evidence / std::log(10.0), h.left});
   d.held_out = p.held_out;
   d.before = p.before, d.noise_floor = p.floor;
@@ -126,6 +143,9 @@ void add_calibration(const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
       }
       ++at;
     }
+  for (std::size_t i = 0; i < p.best.effects.size(); ++i)  // as the effect that all takes share
+    if (const auto own = mean_of_takes(p, i))
+      d.calibration.push_back({p.best.effects[i].name + " " + p.best.effects[i].parameters[0].name, own->at(0), own->at(1)});
   for (const std::size_t c : {0U, 1U})
     d.calibration.push_back({channel_noise[c], p.best.quality.noise[c], std::numeric_limits<double>::quiet_NaN()});
 }

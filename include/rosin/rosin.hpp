@@ -243,6 +243,7 @@
 #include <rosin/diagnose/tone_band.hpp>
 #include <rosin/diagnose/wide_record.hpp>
 #include <rosin/diagnose/width_and_drift.hpp>
+#include <rosin/diagnose/wire_effects.hpp>
 
 #include <rosin/hardware/byte_link.hpp>
 #include <rosin/hardware/capture.hpp>

@@ -80,7 +80,7 @@ inline constexpr double most_places_apart = 2e-3;
   for (std::size_t gone = 0; gone < sets; ++gone) {
     scene_fit fewer = found;
     for (std::size_t i = count; i-- > 0;)
-      if ((gone >> i) & 1U) fewer = without(data, fewer, i);
+      if ((gone >> i) & 1U) fewer = without(fewer, i);
     out.push_back(std::move(fewer));
   }
   return out;

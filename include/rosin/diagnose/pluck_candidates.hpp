@@ -79,11 +79,7 @@ inline void note_foremost(const std::vector<double>& gains, std::size_t most, st
 /// Whether the last effect of a fit is what its name says.
 inline bool is_itself(const scene_fit& f) {
   const pluck_effect& e = f.effects.back();
-  if (!e.is_itself) return true;
-  std::vector<double> values;
-  Eigen::Index at = f.value.size() - static_cast<Eigen::Index>(e.parameters.size());
-  for (const effect_parameter& p : e.parameters) values.push_back(to_physical(p, f.value[at++]));
-  return e.is_itself(values);
+  return !e.is_itself || e.is_itself(f.values_of(f.effects.size() - 1));
 }
 
 inline std::vector<pluck_effect> with_one_more(std::vector<pluck_effect> effects, const pluck_effect& e) {

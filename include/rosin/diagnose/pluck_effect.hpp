@@ -73,6 +73,8 @@ struct pluck_effect {
   std::function<std::vector<std::vector<double>>(const take_residual&)> seek{};
   /// With it: whether it is what its name says at these (physical) values, or does what something else would do as well.
   std::function<bool(const std::vector<double>&)> is_itself{};
+  /// Whether at these (physical) values it is no more than any rig has: it stays in the model and has no name.
+  std::function<bool(const std::vector<double>&)> is_ordinary{};
   double horizon_periods = 1e9;  ///< the model of the effect holds for so long
   std::string variant{};         ///< one of several models of the same effect
   std::string beside{};          ///< id of an effect without which this one is the same as another

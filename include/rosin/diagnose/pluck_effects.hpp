@@ -7,7 +7,7 @@
 #pragma once
 
 #include <rosin/diagnose/hum_effect.hpp>
-#include <rosin/diagnose/pluck_effect.hpp>
+#include <rosin/diagnose/wire_effects.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -247,32 +247,6 @@ inline pluck_effect crosstalk_effect(const string_facts&) {
           .apply = [](pluck_scene& s, const double* v, int) { s.crosstalk = v[0]; }};
 }
 
-/// The wire lets go over a time. What was taken for the instant of release is its middle.
-inline pluck_effect slow_release_effect(const string_facts&) {
-  pluck_effect e{.name = "slow-release",
-                 .parameters = {{"duration_s", 2e-7, 1e-3, 1e-5, true}},
-                 .starts = {{8e-7}, {1.5e-6}, {3e-6}, {1e-5}, {1.8e-5}, {3e-5}, {6e-5}, {1.2e-4}},
-                 .strength = -1,
-                 .apply = [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
-  e.shrinks_with = 0;
-  e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
-    for (std::size_t t = 0; t < layout.takes(); ++t) v[layout.at(t, pluck_layout::release)] -= std::exp(v[v.size() - 1]) / 2;
-  };
-  return e;
-}
-
-/// The wire grips the string over a width.
-inline pluck_effect pluck_width_effect(const string_facts& f) {
-  const double L = f.length_m > 0 ? f.length_m : 1.0;
-  pluck_effect e{.name = "finite-pluck-width",
-                 .parameters = {{"width_m", 1e-5 * L, 0.1 * L, 1e-5, true}},
-                 .starts = {{3e-4 * L}, {6e-4 * L}, {1.5e-3 * L}, {3e-3 * L}, {1e-2 * L}, {3e-2 * L}},
-                 .strength = -1,
-                 .apply = [L](pluck_scene& s, const double* v, int) { s.width = v[0] / L; }};
-  e.shrinks_with = 0;
-  return e;
-}
-
 /// All of them, in the order of the format. `physics`: names that the declared model already contains.
 [[nodiscard]] inline std::vector<pluck_effect> pluck_effects(const string_facts& f) {
   std::vector<pluck_effect> all{
@@ -287,6 +261,7 @@ inline pluck_effect pluck_width_effect(const string_facts& f) {
     all.push_back(sensor_resonance_effect(f, place));
   }
   all.push_back(clamped_end_effect(f, -1));
+  if (f.takes > 1) all.push_back(own_releases_effect(f));
   return all;
 }
 

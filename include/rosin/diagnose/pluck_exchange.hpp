@@ -13,10 +13,9 @@ namespace rosin {
 namespace detail {
 
 /// A fit's effects and values without one of them.
-inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size_t which) {
+inline scene_fit without(const scene_fit& fit, std::size_t which) {
   scene_fit out = fit;
-  Eigen::Index at = data.layout.size();
-  for (std::size_t i = 0; i < which; ++i) at += static_cast<Eigen::Index>(fit.effects[i].parameters.size());
+  const Eigen::Index at = fit.first_of(which);
   const auto gone = static_cast<Eigen::Index>(fit.effects[which].parameters.size()), rest = fit.value.size() - at - gone;
   out.value.resize(at + rest);
   out.value << fit.value.head(at), fit.value.tail(rest);
@@ -32,7 +31,7 @@ inline scene_fit without(const scene_data& data, const scene_fit& fit, std::size
                                   std::array<double, 2> noise, const auto& is_worth) {
   std::size_t count = fit.effects.size();
   for (std::size_t tried = 0, k = 0; tried < count && count > 1; ++tried, k = (k + 1) % count) {
-    scene_fit rest = detail::without(data, fit, k);
+    scene_fit rest = detail::without(fit, k);
     rest = fit_scene(data, rest.effects, rest.value, {{1000, fit.horizon_periods, true, data.compared()}}, noise);
     if (!(detail::cost_of(rest, noise) < 1e299)) continue;
     if (detail::price_of(rest, noise) < detail::price_of(fit, noise) || !is_worth(rest, fit, k)) {

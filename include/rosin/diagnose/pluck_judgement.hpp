@@ -34,6 +34,20 @@ struct pluck_diagnosis {
   std::vector<std::string> held_out;
   double slow_noise =
       0;  ///< at the pitch, power over that of white noise, where slow noise was taken out (slow_noise.hpp); 0: none
+
+  /// Whether an effect that was found is no more than any rig has, or cannot be told from what is. It has no name.
+  [[nodiscard]] bool is_ordinary(std::size_t which) const {
+    if (best.is_ordinary(which)) return true;
+    return which + 1 == best.effects.size() && std::any_of(ranking.begin(), ranking.end(), [&](const pluck_hypothesis& h) {
+             return h.fit.effects.size() == best.effects.size() && h.fit.is_ordinary(which) &&
+                    std::find(alternatives.begin(), alternatives.end(), h.ids.back()) != alternatives.end();
+           });
+  }
+  [[nodiscard]] bool has_ordinary_effects_only() const {
+    for (std::size_t i = 0; i < best.effects.size(); ++i)
+      if (!is_ordinary(i)) return false;
+    return true;
+  }
 };
 
 namespace detail {
@@ -56,7 +70,7 @@ inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<plu
   };
   while (!held.empty() && !d.best.effects.empty() && !is_real()) {
     const bool was_brief = d.best.effects.back().horizon_periods < 1e8;  // what is left holds for as long as was declared
-    const scene_fit less = without(d.data, d.best, d.best.effects.size() - 1);
+    const scene_fit less = without(d.best, d.best.effects.size() - 1);
     const double horizon =
         was_brief ? std::min(d.declared.horizon_periods, d.data.most_periods_with(less.effects)) : d.best.horizon_periods;
     d.best = fit_scene(d.data, less.effects, less.value, {{1000, horizon, true, freedom::all}}, {noise, noise});
@@ -103,6 +117,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
                  modulated || doubtful || brief ||
                  was > std::max(0.6 * d.floor, d.data.options.causality ? least_told(d.data) : 0.0);
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
+  d.mismatched = d.mismatched && !(d.explained && d.has_ordinary_effects_only());
   if (d.explained || excess <= 0.5 * was) return;
   d.best = plain;  // what leaves more than half is no part of the answer; the ranking keeps it
   d.found_gain.clear(), d.alternatives.clear(), d.after = d.before;

@@ -108,10 +108,13 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
   double horizon = std::min(most_periods, fit.horizon_periods);
   for (const pluck_effect& e : fit.effects) {
     pluck_effect mine = e;
+    double own = 0, count = 0;  // what is never zero begins where the others are
+    for (std::size_t i = 0; i < e.parameters.size(); ++i)
+      if (e.parameters[i].take >= 0 && e.parameters[i].low > 0) own += fit.value[at + static_cast<Eigen::Index>(i)], count += 1;
     std::erase_if(mine.parameters, [](const effect_parameter& p) { return p.take > 0; });
     for (const effect_parameter& p : mine.parameters) {
       v.conservativeResize(v.size() + 1);
-      v[v.size() - 1] = p.take < 0 ? fit.value[at + (&p - mine.parameters.data())] : 0.0;
+      v[v.size() - 1] = p.take < 0 ? fit.value[at + (&p - mine.parameters.data())] : count > 0 ? own / count : 0.0;
     }
     horizon = std::min(horizon, e.horizon_periods);
     at += static_cast<Eigen::Index>(e.parameters.size());
@@ -192,7 +195,7 @@ struct held_out_worth {
 };
 inline held_out_worth held_out_gain(const scene_data& data, const scene_fit& fit, const std::vector<pluck_take>& held,
                                     double noise) {
-  scene_fit less = without(data, fit, fit.effects.size() - 1);
+  scene_fit less = without(fit, fit.effects.size() - 1);
   less = fit_scene(data, less.effects, less.value, {{1000, fit.horizon_periods, true, data.compared()}}, {noise, noise});
   less.horizon_periods = fit.horizon_periods;
   held_out_worth out;

@@ -21,6 +21,21 @@ struct scene_fit {
   int iterations = 0;
   bool converged = false;
 
+  /// Index of an effect's first parameter; its physical values.
+  [[nodiscard]] Eigen::Index first_of(std::size_t which) const {
+    Eigen::Index at = value.size();
+    for (std::size_t i = which; i < effects.size(); ++i) at -= static_cast<Eigen::Index>(effects[i].parameters.size());
+    return at;
+  }
+  [[nodiscard]] std::vector<double> values_of(std::size_t which) const {
+    std::vector<double> out;
+    Eigen::Index at = first_of(which);
+    for (const effect_parameter& p : effects[which].parameters) out.push_back(to_physical(p, value[at++]));
+    return out;
+  }
+  [[nodiscard]] bool is_ordinary(std::size_t which) const {
+    return effects[which].is_ordinary && effects[which].is_ordinary(values_of(which));
+  }
   /// Holds for the first periods only, though none of its effects is so limited: what comes later is a mismatch.
   [[nodiscard]] bool falls_short() const {
     return horizon_periods < 1e8 &&

@@ -181,7 +181,7 @@ struct plucks_without_slow_noise {
   constexpr double beyond_doubt = 200, stands_out = 20;
   scene_fit fit = d.best;
   for (std::size_t i = fit.effects.size(); i-- > 0;)
-    if (i >= d.found_gain.size() || d.found_gain[i] < beyond_doubt) fit = detail::without(d.data, fit, i);
+    if (i >= d.found_gain.size() || d.found_gain[i] < beyond_doubt) fit = detail::without(fit, i);
   const fit_stage all{1000, std::min(fit.horizon_periods, d.data.most_periods_with(fit.effects)), true, freedom::all};
   if (fit.effects.size() < d.best.effects.size()) fit = fit_scene(d.data, fit.effects, fit.value, {all}, fit.quality.noise);
   std::vector<pluck_take> takes = d.data.takes;

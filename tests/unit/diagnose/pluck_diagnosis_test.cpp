@@ -77,10 +77,21 @@ TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck
   REQUIRE(d->best.effects.size() == 1);
   CHECK(d->explained);
   CHECK(d->best.effects[0].id() == "slow-release");
-  CHECK(std::exp(d->best.value[d->data.layout.size()]) == test::approx(slow).epsilon(0.02));
+  CHECK(d->best.values_of(0)[0] == test::approx(slow).epsilon(0.02));
   CHECK(d->before > 3 * d->floor);
   CHECK(d->after < 1.2 * d->floor);
   CHECK(d->mismatch.residual_over_noise > 2);
+}
+
+TEST_CASE("wires that let go over some microseconds, one longer than another, are in the model and have no name") {
+  const auto d = look({test::modal_pluck(1, 1, 3.5e-6), test::modal_pluck(1, 2, 2.5e-6)}, test::modal_pluck(1, 3, 3e-6));
+  REQUIRE_MESSAGE(d, d.error());
+  REQUIRE(d->best.effects.size() == 1);
+  CHECK((d->best.effects[0].id() == "slow-release" || d->best.effects[0].id() == "finite-pluck-width"));
+  CHECK(d->is_ordinary(0));
+  CHECK_FALSE(d->mismatched);
+  CHECK(d->explained);
+  CHECK(d->after < 1.05 * d->floor);
 }
 
 TEST_CASE("a loss that grows with frequency is none to the air of less than nothing" * doctest::test_suite("long")) {
