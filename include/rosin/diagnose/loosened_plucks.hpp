@@ -74,7 +74,7 @@ inline constexpr double most_places_apart = 2e-3;
 }
 
 /// The effects that were found, and what is left of them where some are taken out: all of them first, none last.
-[[nodiscard]] inline std::vector<scene_fit> with_fewer(const scene_data& data, const scene_fit& found) {
+[[nodiscard]] inline std::vector<scene_fit> with_fewer(const scene_fit& found) {
   std::vector<scene_fit> out;
   const std::size_t count = found.effects.size(), sets = std::size_t{1} << std::min<std::size_t>(count, 4);
   for (std::size_t gone = 0; gone < sets; ++gone) {
@@ -111,7 +111,7 @@ struct loosened_fit {
   constexpr double first_periods = 20;
   if (found.quality.inflation() == 1) return std::nullopt;
   const double was = found.quality.inflation() - 1, periods = found.horizon_periods;
-  for (scene_fit& fewer : with_fewer(data, found)) {
+  for (scene_fit& fewer : with_fewer(found)) {
     const bool all = fewer.effects.size() == found.effects.size();
     // `fewer` begins with what `found` leaves; each fit goes on only where the one before leaves little
     for (const double seen : {std::min(first_periods, periods), periods})
