@@ -30,7 +30,9 @@ rosin::outcome<json> isolability_of(const rosin::rig& rig, double rate_Hz, doubl
                length = values.length_m ? values.length_m->value : 0;
   const rosin::band limits = plan.options.limits_for(rate_Hz);
   const rosin::string_facts facts{plan.guess.fundamental_Hz, rate_Hz, limits.stop_Hz, impedance, length, plan.takes.size()};
-  const auto found = rosin::isolability_of(plan, rosin::still_to_add(rosin::catalogue_without(physics, facts, limits), {}));
+  auto effects = rosin::still_to_add(rosin::catalogue_without(physics, facts, limits), {});
+  std::erase_if(effects, [](const rosin::pluck_effect& e) { return e.variant == "each"; });  // of planned plucks all alike
+  const auto found = rosin::isolability_of(plan, effects);
   json out{{"rig", rig.title.value_or(rig.file)}, {"sampling_rate_Hz", rate_Hz}, {"noise_N", noise_N},
            {"seconds", plan.duration_s},          {"assumed", values.assumed},   {"warnings", remarks}};
   out["effects"] = json::array(), out["cosine"] = json::array(), out["classes"] = json::array();
