@@ -146,16 +146,17 @@ private:
     for (auto& h : d_.ranking)
       h.log_evidence = -0.5 * cost_of(h.fit, noise_) * n / (samples(h.fit) * temper) - 0.5 * free_parameters(h.fit) * std::log(n);
   }
+  /// Whether the last effects of two fits are two models of the same effect.
+  [[nodiscard]] static bool is_variant(const scene_fit& a, const scene_fit& b) {
+    return a.effects.back().name == b.effects.back().name && a.effects.back().place == b.effects.back().place;
+  }
   void accept(const std::vector<scene_fit>& fits, const comparison& c) {
     const scene_fit& tried = fits.front();
     d_.mismatched = true;
     d_.found_gain.push_back(c.gain);
     d_.alternatives.clear();
-    const auto is_variant = [&](const scene_fit& f) {
-      return f.effects.back().name == tried.effects.back().name && f.effects.back().place == tried.effects.back().place;
-    };
     for (const scene_fit& f : fits)
-      if (!is_variant(f) && f.horizon_periods == tried.horizon_periods &&
+      if (!is_variant(f, tried) && f.horizon_periods == tried.horizon_periods &&
           0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
         d_.alternatives.push_back(f.effects.back().id());
     if (first_.empty()) first_ = tried.effects.back().name, first_leaves_ = c.left / c.was;
@@ -177,7 +178,7 @@ private:
     if (round == 0) d_.base = before, nothing_found_ = d_.data.layout.has_ends() ? without_ends(tried.horizon_periods) : before;
     const bool worth = is_worth(c, tried.effects.back(), round);
     for (const scene_fit& f : fits)
-      if (worth || &f == &tried) rank(f);
+      if (&f == &tried || (worth && !is_variant(f, tried))) rank(f);
     if (round == 0) rank(before);
     // Linear parameters of which there are many (hum) gain half a unit each from noise alone.
     const double chance = std::max(0, static_cast<int>(tried.effects.back().parameters.size()) - 3);

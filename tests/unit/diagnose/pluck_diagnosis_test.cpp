@@ -87,7 +87,7 @@ TEST_CASE("wires that let go over some microseconds, one longer than another, ar
   const auto d = look({test::modal_pluck(1, 1, 3.5e-6), test::modal_pluck(1, 2, 2.5e-6)}, test::modal_pluck(1, 3, 3e-6));
   REQUIRE_MESSAGE(d, d.error());
   REQUIRE(d->best.effects.size() == 1);
-  CHECK((d->best.effects[0].id() == "slow-release" || d->best.effects[0].id() == "finite-pluck-width"));
+  CHECK((d->best.effects[0].name == "slow-release" || d->best.effects[0].name == "finite-pluck-width"));
   CHECK(d->is_ordinary(0));
   CHECK_FALSE(d->mismatched);
   CHECK(d->explained);
