@@ -67,7 +67,7 @@ void locate(const rosin::pluck_diagnosis& p, residual_picture& out) {
 
 std::optional<residual_picture> residuals_of(const rosin::pluck_diagnosis& p) {
   if (p.base.value.size() == 0 || p.best.value.size() == 0) return std::nullopt;
-  const auto before = left_by(p.data, p.base, p.mismatch.take);
+  const auto before = left_by(p.data, p.mismatched ? p.base : p.best, p.mismatch.take);  // with what any wire does
   residual_picture out;
   out.take = p.data.takes[p.mismatch.take].name, out.rate_Hz = p.data.takes[p.mismatch.take].rate_Hz;
   out.fundamental_Hz = p.base.value[rosin::pluck_layout::fundamental];

@@ -58,13 +58,14 @@ TEST_CASE("what no parameter scales is sought from little on: an effect that har
   constexpr std::array<double, 2> noise{1e-4, 1e-4};
   const auto found = [&](const rosin::pluck_effect& effect, double there) {
     rosin::scene_data data{{}, {.fundamental_Hz = 659.69}, options, layout};
+    const double fitted = rosin::to_fitted(effect.parameters[0], there);
     for (std::size_t t = 0; t < 2; ++t)
-      data.takes.push_back(test::scene_pluck(layout, {effect}, test::values_of(layout, {std::log(there)}), t, noise[0], 3 + t));
+      data.takes.push_back(test::scene_pluck(layout, {effect}, test::values_of(layout, {fitted}), t, noise[0], 3 + t));
     rosin::scene_fit plain;
     plain.value = test::values_of(layout);
     const auto fits = rosin::one_more_effect(data, plain, {effect}, false, noise);
     REQUIRE(fits.size() == 1);
-    return std::exp(fits[0].value[layout.size()]) / there;
+    return fits[0].values_of(0)[0] / there;
   };
   CHECK(found(rosin::slow_release_effect(facts), 1.2e-6) == test::approx(1).epsilon(0.2));
   CHECK(found(rosin::pluck_width_effect(facts), 2e-4) == test::approx(1).epsilon(0.2));
