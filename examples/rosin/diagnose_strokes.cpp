@@ -20,13 +20,12 @@ rosin::calibration calibration_with(const rosin::pluck_diagnosis& p, double decl
   rosin::pluck_fit_result fit = p.declared;
   const Eigen::Index plain = p.data.layout.size();
   Eigen::VectorXd v = p.best.value.head(plain);
-  Eigen::Index at = plain;
-  for (const auto& e : p.best.effects) {
-    if (e.name == "bending-stiffness") v[rosin::pluck_layout::inharmonicity] += p.best.value[at];
-    if (e.name == "frequency-dependent-loss") v[rosin::pluck_layout::internal_loss] += p.best.value[at];
-    if (e.name == "air-loss")
-      v[rosin::pluck_layout::air_loss] += p.best.value[at], v[rosin::pluck_layout::loss_drag] += p.best.value[at + 1];
-    at += static_cast<Eigen::Index>(e.parameters.size());
+  for (std::size_t i = 0; i < p.best.effects.size(); ++i) {
+    const std::string& name = p.best.effects[i].name;
+    const std::vector<double> found = p.best.values_of(i);
+    if (name == "bending-stiffness") v[rosin::pluck_layout::inharmonicity] += found[0];
+    if (name == "frequency-dependent-loss") v[rosin::pluck_layout::internal_loss] += found[0];
+    if (name == "air-loss") v[rosin::pluck_layout::air_loss] += found[0], v[rosin::pluck_layout::loss_drag] += found[1];
   }
   fit.value = v;
   if (p.best.covariance.rows() >= plain) fit.covariance = p.best.covariance.topLeftCorner(plain, plain);
@@ -117,11 +116,8 @@ double zero_of_plucks_N(const rosin::pluck_diagnosis& plucks) {
 }  // namespace
 
 double axial_stiffness_of(const rosin::pluck_diagnosis& plucks) {
-  Eigen::Index at = plucks.data.layout.size();
-  for (const auto& e : plucks.best.effects) {
-    if (e.name == "tension-modulation") return plucks.best.value[at];
-    at += static_cast<Eigen::Index>(e.parameters.size());
-  }
+  for (std::size_t i = 0; i < plucks.best.effects.size(); ++i)
+    if (plucks.best.effects[i].name == "tension-modulation") return plucks.best.values_of(i)[0];
   return 0;
 }
 

@@ -261,7 +261,7 @@ inline pluck_effect crosstalk_effect(const string_facts&) {
     all.push_back(sensor_resonance_effect(f, place));
   }
   all.push_back(clamped_end_effect(f, -1));
-  if (f.takes > 1) all.push_back(own_releases_effect(f));
+  if (f.takes > 1) all.push_back(slow_release_effect(f, true));
   return all;
 }
 

@@ -9,7 +9,6 @@
 #include <rosin/diagnose/pluck_effect.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace rosin {
@@ -17,36 +16,24 @@ namespace rosin {
 /// A wire of a tenth of a millimetre that parts as slowly as by 25 m/s takes so long.
 inline constexpr double ordinary_release_s = 4e-6;
 
-/// The wire lets go over a time. Not as a logarithm: what a fit knows best is the middle, a straight line in instant and duration.
-inline pluck_effect slow_release_effect(const string_facts&) {
-  pluck_effect e{.name = "slow-release",
-                 .parameters = {{"duration_s", 2e-7, 1e-3, 1e-9}},
-                 .starts = {{8e-7}, {1.5e-6}, {3e-6}, {1e-5}, {1.8e-5}, {3e-5}, {6e-5}, {1.2e-4}},
-                 .strength = -1,
-                 .apply = [](pluck_scene& s, const double* v, int) { s.release_duration_s = v[0]; }};
-  e.shrinks_with = 0;
-  e.is_ordinary = [](const std::vector<double>& v) { return v[0] < ordinary_release_s; };
-  e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
-    for (std::size_t t = 0; t < layout.takes(); ++t) v[layout.at(t, pluck_layout::release)] -= v[v.size() - 1] / 2;
-  };
-  return e;
-}
-
-/// The same, each pluck over a time of its own.
-inline pluck_effect own_releases_effect(const string_facts& f) {
+/// The wire lets go over a time, `each` pluck over its own. What was taken for the instant of release is its middle. Not as a
+/// logarithm: what a fit knows best is the middle, a straight line in instant and duration.
+inline pluck_effect slow_release_effect(const string_facts& f, bool each = false) {
+  const std::size_t count = each ? f.takes : 1;
   pluck_effect e{.name = "slow-release",
                  .strength = -1,
-                 .apply = [](pluck_scene& s, const double* v, int take) { s.release_duration_s = v[take]; },
-                 .variant = "each"};
-  for (std::size_t t = 0; t < f.takes; ++t) e.parameters.push_back({"duration_s", 2e-8, 1e-3, 1e-9, false, static_cast<int>(t)});
-  for (const double duration_s : {1.5e-6, 3e-6, 1e-5, 3e-5, 1e-4}) e.starts.emplace_back(f.takes, duration_s);
+                 .apply = [each](pluck_scene& s, const double* v, int take) { s.release_duration_s = v[each ? take : 0]; },
+                 .variant = each ? "each" : ""};
+  for (int t = 0; t < static_cast<int>(count); ++t)
+    e.parameters.push_back({"duration_s", each ? 2e-8 : 2e-7, 1e-3, 1e-9, false, each ? t : -1});
+  for (const double duration_s : {8e-7, 1.5e-6, 3e-6, 1e-5, 1.8e-5, 3e-5, 6e-5, 1.2e-4}) e.starts.emplace_back(count, duration_s);
+  if (!each) e.shrinks_with = 0;
   e.is_ordinary = [](const std::vector<double>& v) {
     return std::all_of(v.begin(), v.end(), [](double duration_s) { return duration_s < ordinary_release_s; });
   };
-  e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
-    const Eigen::Index first = v.size() - static_cast<Eigen::Index>(layout.takes());
+  e.rebase = [each, first = static_cast<Eigen::Index>(count)](const pluck_layout& layout, Eigen::VectorXd& v) {
     for (std::size_t t = 0; t < layout.takes(); ++t)
-      v[layout.at(t, pluck_layout::release)] -= v[first + static_cast<Eigen::Index>(t)] / 2;
+      v[layout.at(t, pluck_layout::release)] -= v[v.size() - first + static_cast<Eigen::Index>(each ? t : 0)] / 2;
   };
   return e;
 }

@@ -25,7 +25,7 @@ TEST_CASE("wire effects: the instant of release is the middle of what it takes")
   for (std::size_t t = 0; t < 2; ++t) CHECK(v[layout.at(t, rosin::pluck_layout::release)] == test::approx(0.00399));
   v.conservativeResize(layout.size() + 2);
   v.tail(2) << 1e-5, 4e-5;
-  rosin::own_releases_effect({.takes = 2}).rebase(layout, v);
+  rosin::slow_release_effect({.takes = 2}, true).rebase(layout, v);
   CHECK(v[layout.at(0, rosin::pluck_layout::release)] == test::approx(0.003985));
   CHECK(v[layout.at(1, rosin::pluck_layout::release)] == test::approx(0.00397));
 }
