@@ -247,16 +247,25 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
   return fit;
 }
 
+/// The best first; that one once more from the first periods on where it leaves more than noise.
+inline void put_in_order(const scene_data& data, const scene_fit& already, std::vector<scene_fit>& fits,
+                         std::array<double, 2> noise) {
+  std::sort(fits.begin(), fits.end(), [&](const auto& a, const auto& b) { return price_of(a, noise) < price_of(b, noise); });
+  if (!fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek)
+    fits.front() = rewound(data, std::move(fits.front()), noise);
+  prefer_over_one_horizon(data, already, fits, noise);
+}
+
 }  // namespace detail
 
 /// Fits of the effects `already` in the model and one more, the best first. `strong`: what is there is far off; effects that no
-/// score tells of are then only tried if no other leaves mere noise.
+/// score tells of are then only tried if no other leaves mere noise. `known`: what earlier calls of the same recordings found.
 [[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already,
                                                             const std::vector<pluck_effect>& catalogue, bool strong,
-                                                            std::array<double, 2> noise) {
+                                                            std::array<double, 2> noise, detail::known_starts& known) {
   const detail::beginnings begin = detail::find_beginnings(data, already, catalogue, strong, noise);
   std::vector<detail::found_start> found;
-  if (strong && already.effects.empty()) found = detail::strong_starts(data, already, catalogue, noise);
+  if (strong && already.effects.empty()) found = detail::strong_starts(data, already, catalogue, noise, known);
   const auto is_found = [&](const pluck_effect& e) {
     return std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.id == e.id(); });
   };
@@ -269,16 +278,19 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
           complete = complete || (strong && f->quality.inflation() == 1.0);
           (catalogue[i].seek ? sought : fits).push_back(*std::move(f));
         }
-  const auto better = [&](const auto& a, const auto& b) { return detail::price_of(a, noise) < detail::price_of(b, noise); };
-  std::sort(fits.begin(), fits.end(), better);
+  std::sort(fits.begin(), fits.end(),
+            [&](const auto& a, const auto& b) { return detail::price_of(a, noise) < detail::price_of(b, noise); });
   detail::follow_up(data, fits, strong, noise);
   fits.insert(fits.end(), sought.begin(), sought.end());
   std::erase_if(fits, [](const scene_fit& f) { return !detail::is_itself(f); });
-  std::sort(fits.begin(), fits.end(), better);
-  if (!fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek)
-    fits.front() = detail::rewound(data, std::move(fits.front()), noise);
-  detail::prefer_over_one_horizon(data, already, fits, noise);
+  detail::put_in_order(data, already, fits, noise);
   return fits;
+}
+[[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already,
+                                                            const std::vector<pluck_effect>& catalogue, bool strong,
+                                                            std::array<double, 2> noise) {
+  detail::known_starts none;
+  return one_more_effect(data, already, catalogue, strong, noise, none);
 }
 
 }  // namespace rosin

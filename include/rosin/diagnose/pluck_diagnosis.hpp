@@ -87,18 +87,21 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
          d.base.quality.residual_ratio[0] > most_loosened;
 }
 
-/// Of recordings as they are.
+/// Of recordings as they are. Where the first effect leaves more than `stop_above` (inflation), no other is sought.
 [[nodiscard]] inline outcome<pluck_diagnosis> diagnose_as_recorded(const std::vector<pluck_take>& takes,
                                                                    const std::vector<pluck_take>& held, const pluck_guess& guess,
                                                                    pluck_options options, const effects_for& catalogue_for,
-                                                                   int most_effects, double least_temper = 1) {
+                                                                   int most_effects, double least_temper = 1,
+                                                                   double stop_above = 1e300) {
+  constexpr double clearly_less = 0.9;  // of what the first effect leaves
   auto declared = fit_declared_loosely(takes, guess, options);
   if (!declared) return failure{declared.error()};
   options.causality = declared->layout.is_free(pluck_layout::causality);
   pluck_diagnosis d{{takes, guess, options, declared->layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
   d.data.least_temper = least_temper;
   double least_noise = 0;
-  std::tie(d, least_noise) = searched(d, catalogue_for(*declared), most_effects);
+  search_memory memory{.stop_above = stop_above};
+  std::tie(d, least_noise) = searched(d, catalogue_for(*declared), most_effects, memory);
   drop_what_is_not_predicted(d, held, least_noise);
   const seen_noise still = noise_before_release(d.data, d.best);
   const bool modulated = is_noisier(d.best.quality.noise, still, least_temper > 1);
@@ -107,10 +110,12 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   const auto& judged = held.empty() ? takes : held;
   const scene_fit found = d.best;
   judge(d, judged, noise, still.samples > 0, modulated);
+  if (memory.is_hopeless(found)) return d;
   const bool surely = leaves_causal_loss(d.data, found, {noise, noise});
   if (surely || is_far_off(d, found)) {
     options.causality = true;
-    auto other = diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects, least_temper);
+    auto other = diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects, least_temper,
+                                      surely ? 1e300 : clearly_less * memory.first_leaves());
     if (surely || (other && is_due_to_causal_loss(*other, found))) return other;
   }
   if (const auto looser = tells_one_effect(d, found) ? std::nullopt : what_to_loosen(d.data, found, {noise, noise})) {

@@ -47,10 +47,24 @@ inline double share_left(const scene_data& data, const scene_fit& before, const 
   return (cost_of(fits.front(), noise) - expected) / std::max(1e-9, cost_of(plain, noise) - expected);
 }
 
+/// What searches in the same recordings know of one another.
+struct search_memory {
+  double stop_above = 1e300;       ///< a first effect that leaves more (inflation) is followed by no other
+  known_starts starts{};           ///< of supports
+  std::vector<scene_fit> first{};  ///< each effect alone, over all of the recordings, where a search began with all of them
+
+  [[nodiscard]] bool is_hopeless(const scene_fit& f) const { return f.quality.inflation() > stop_above; }
+  /// What the best of them leaves.
+  [[nodiscard]] double first_leaves() const {
+    return first.empty() || first.front().horizon_periods < 1e8 ? 1e300 : first.front().quality.inflation();
+  }
+};
+
 /// Adds effects to the declared model one by one, as long as it is worth it.
 class effect_search {
 public:
-  effect_search(pluck_diagnosis& d, const std::vector<pluck_effect>& all) : d_{d}, all_{all}, weigh_{d.declared.noise_N} {
+  effect_search(pluck_diagnosis& d, const std::vector<pluck_effect>& all, search_memory& memory)
+      : d_{d}, all_{all}, memory_{memory}, weigh_{d.declared.noise_N} {
     now_.value = d.declared.value, now_.sd = d.declared.sd, now_.covariance = d.declared.covariance;
     now_.horizon_periods = d.declared.horizon_periods, now_.converged = true;
     now_.quality.residual_ratio = d.declared.residual_ratio;
@@ -59,7 +73,7 @@ public:
 
   void run(int most_effects) {
     const auto found = [&] { return static_cast<int>(now_.effects.size()); };
-    while (found() < most_effects && add_one(found())) {
+    while (found() < most_effects && add_one(found()) && !memory_.is_hopeless(now_)) {
     }
     d_.best = exchanged(d_.data, now_, all_, 1, noise_, [&](const scene_fit& rest, const scene_fit& fit, std::size_t which) {
       return is_worth(compare(rest, fit), fit.effects[which], 1);
@@ -108,18 +122,35 @@ private:
     return c.left < c.was / 3 && (much || (!at_known_end && nearly_all && c.gain > beyond_doubt));
   }
 
-  [[nodiscard]] std::vector<scene_fit> candidates(int round) const {
+  /// Each effect alone is tried once only, whatever a search leaves out.
+  [[nodiscard]] std::vector<scene_fit> remembered(const std::vector<pluck_effect>& catalogue) const {
+    std::vector<scene_fit> fits = memory_.first;
+    std::erase_if(fits, [&](const scene_fit& f) {
+      return std::none_of(catalogue.begin(), catalogue.end(), [&](const auto& e) { return e.id() == f.effects.back().id(); });
+    });
+    put_in_order(d_.data, now_, fits, weigh_);
+    return fits;
+  }
+  [[nodiscard]] std::vector<scene_fit> candidates(int round) {
     const std::vector<pluck_effect> catalogue = still_to_add(all_, now_.effects);
+    const bool begins = round == 0 && d_.data.most_periods > 1e8;
+    if (begins && !memory_.first.empty())
+      if (auto fits = remembered(catalogue); !fits.empty()) return fits;
+    std::vector<scene_fit> fits = newly_tried(catalogue, round);
+    if (begins && memory_.first.empty()) memory_.first = fits;
+    return fits;
+  }
+  [[nodiscard]] std::vector<scene_fit> newly_tried(const std::vector<pluck_effect>& catalogue, int round) const {
     const bool strong =
         round == 0 ? now_.horizon_periods < 1e8 || now_.quality.residual_ratio[0] > 0.05 : now_.quality.residual_ratio[0] > 0.1;
-    std::vector<scene_fit> fits = one_more_effect(d_.data, now_, catalogue, strong, weigh_);
+    std::vector<scene_fit> fits = one_more_effect(d_.data, now_, catalogue, strong, weigh_, memory_.starts);
     // Over all of a record, what is small per period may have turned partials too far for a score test: once more from the first
     // periods.
     const double tolerated = round == 0 ? 1.5 : 9, much = 0.25;
     if (strong || fits.empty() || !(fits.front().quality.inflation() > tolerated)) return fits;
     const double left = share_left(d_.data, now_, fits, weigh_);
     if (!(left > much)) return fits;
-    std::vector<scene_fit> again = one_more_effect(d_.data, now_, catalogue, true, weigh_);
+    std::vector<scene_fit> again = one_more_effect(d_.data, now_, catalogue, true, weigh_, memory_.starts);
     return !again.empty() && share_left(d_.data, now_, again, weigh_) < left ? again : fits;
   }
   void leave_alone() {
@@ -212,6 +243,7 @@ private:
 
   pluck_diagnosis& d_;
   const std::vector<pluck_effect>& all_;
+  search_memory& memory_;
   std::array<double, 2> weigh_, noise_{1e300, 1e300};
   scene_fit now_, nothing_found_;
   std::string first_;
@@ -223,13 +255,13 @@ using search_result = std::pair<pluck_diagnosis, double>;
 /// `d`, searched, and the noise. What is a doubtful beginning is kept unless a search that begins otherwise leaves a ninth: one of
 /// the first periods, where that finds an effect whose model holds no longer; one without it.
 [[nodiscard]] inline search_result searched(const pluck_diagnosis& d, std::vector<pluck_effect> all, int most_effects,
-                                            bool once_more = true) {
+                                            search_memory& memory, bool once_more = true) {
   search_result out{d, 0};
-  effect_search search(out.first, all);
+  effect_search search(out.first, all, memory);
   search.run(most_effects);
   out.second = search.noise();
   const std::string doubtful = search.doubtful_beginning();
-  if (!once_more || doubtful.empty()) return out;
+  if (!once_more || doubtful.empty() || memory.is_hopeless(out.first.best)) return out;
   const auto excess = [](const search_result& x) { return x.first.best.quality.inflation() - 1; };
   const auto leaves_a_ninth = [&](const search_result& other) { return excess(other) < excess(out) / 9; };
   const auto is_brief = [](const pluck_effect& e) { return e.horizon_periods < 1e8; };
@@ -237,13 +269,13 @@ using search_result = std::pair<pluck_diagnosis, double>;
   if (brief != all.end()) {
     pluck_diagnosis early = d;
     early.data.most_periods = brief->horizon_periods;
-    auto other = searched(early, all, most_effects, false);
+    auto other = searched(early, all, most_effects, memory, false);
     other.first.data.most_periods = d.data.most_periods;
     const auto& found = other.first.best.effects;
     if (std::any_of(found.begin(), found.end(), is_brief) && leaves_a_ninth(other)) return other;
   }
   std::erase_if(all, [&](const pluck_effect& e) { return e.name == doubtful; });
-  auto other = searched(d, std::move(all), most_effects, false);
+  auto other = searched(d, std::move(all), most_effects, memory, false);
   return leaves_a_ninth(other) ? other : out;
 }
 

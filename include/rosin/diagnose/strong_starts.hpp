@@ -34,27 +34,28 @@ inline double gain_as_it_stands(const score_result& s) {
   return s.mix > 0 ? std::max(0.0, s.gain * (2 / s.mix - 1 / (s.mix * s.mix))) : 0.0;
 }
 
+/// Starts that depend on the recordings alone: found once, however often a search begins anew.
+using known_starts = std::optional<std::vector<found_start>>;
+
 /// A support's mode as the fit along a line of complex frequencies sees it (calibrate/end_fit.hpp), which no strong coupling
 /// leads astray; for either end, whichever it chose. It knows of no other effect.
-inline void add_support_starts(const scene_data& data, const std::vector<pluck_effect>& catalogue,
-                               std::vector<found_start>& out) {
-  const auto supports = [](const pluck_effect& e) { return e.name == "support-resonance"; };
-  if (std::none_of(catalogue.begin(), catalogue.end(), supports)) return;
+[[nodiscard]] inline std::vector<found_start> support_starts(const scene_data& data, const std::vector<pluck_effect>& supports) {
   end_options one;
   one.most_modes = 1;
   const auto fitted = fit_ends(data.takes, data.guess, data.options, one);
-  if (!fitted || fitted->modes.empty() || fitted->plucks.value.size() != data.layout.first_of_ends()) return;
+  if (!fitted || fitted->modes.empty() || fitted->plucks.value.size() != data.layout.first_of_ends()) return {};
   Eigen::VectorXd value = Eigen::VectorXd::Zero(data.layout.size());  // known ends as declared
   value.head(data.layout.first_of_ends()) = fitted->plucks.value;
   const admittance_mode& mode = fitted->modes.front().mode;
-  for (const pluck_effect& e : catalogue) {
-    if (!supports(e)) continue;
+  std::vector<found_start> out;
+  for (const pluck_effect& e : supports) {
     pluck_scene probe;
     const std::array<double, 4> unit{1000, 10, 1, 0};
     e.apply(probe, unit.data(), 0);
     const double per_mass = probe.ends[static_cast<std::size_t>(e.place)].modes.front().per_mass_per_s;
     out.push_back({e.id(), extended(data.layout, value, e, {mode.frequency_Hz, mode.q, mode.per_mass_per_s / per_mass, 0})});
   }
+  return out;
 }
 
 /// The declared string with its releases where they are seen.
@@ -98,10 +99,14 @@ inline void add_load_starts(const scene_data& data, const std::vector<pluck_effe
 
 /// `declared`: the fit of the declared model. A load is only sought in this way where that leaves much.
 inline std::vector<found_start> strong_starts(const scene_data& data, const scene_fit& declared,
-                                              const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise) {
+                                              const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise,
+                                              known_starts& of_supports) {
   constexpr double much = 0.3;
-  std::vector<found_start> out;
-  add_support_starts(data, catalogue, out);
+  std::vector<pluck_effect> supports;
+  std::copy_if(catalogue.begin(), catalogue.end(), std::back_inserter(supports),
+               [](const pluck_effect& e) { return e.name == "support-resonance"; });
+  if (!supports.empty() && !of_supports) of_supports = support_starts(data, supports);
+  std::vector<found_start> out = supports.empty() ? std::vector<found_start>{} : *of_supports;
   const auto& left = declared.quality.residual_ratio;
   if (!left.empty() && *std::max_element(left.begin(), left.end()) > much) add_load_starts(data, catalogue, noise, out);
   return out;

@@ -3,6 +3,7 @@
 #include <rosin/diagnose/pluck_judgement.hpp>
 
 #include <rosin/diagnose/pluck_diagnosis.hpp>
+#include <rosin/simulate/burdened_signals.hpp>
 
 #include "plucked.hpp"
 #include "support/approx.hpp"
@@ -49,4 +50,33 @@ TEST_CASE(
   CHECK(d->ranking.front().fit.quality.inflation() == 1.0);
   CHECK(d->after > 7 * d->floor);
   CHECK_FALSE(d->explained);
+}
+
+TEST_CASE("pluck judgement: two effects that together come near what is neither are no part of the answer" *
+          doctest::test_suite("long")) {
+  rosin::rig_burden burden;
+  burden.string.loads = {{0.58, 6e-6, 0, 0}};
+  std::vector<rosin::pluck_take> takes;
+  for (const double force_N : {1.0, 0.5, 0.75})
+    takes.push_back(
+        test::recorded(*rosin::simulate_pluck(test::plucked_rig, burden,
+                                              {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.06}),
+                       force_N, takes.size()));
+  const std::vector held{takes.back()};
+  takes.pop_back();
+  const auto d = rosin::diagnose_plucks(
+      takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
+        const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};
+        auto all = rosin::catalogue_without({}, facts, fit.limits);
+        std::erase_if(all, [](const auto& e) { return e.name != "support-resonance"; });
+        return all;
+      });
+  REQUIRE_MESSAGE(d, d.error());
+  CHECK(d->mismatched);
+  CHECK_FALSE(d->explained);
+  CHECK(d->best.effects.empty());
+  CHECK(d->after == d->before);
+  CHECK(d->ranking.front().ids.size() == 2);
+  REQUIRE(d->ranking.front().left);
+  CHECK(*d->ranking.front().left < 0.5 * d->before);
 }

@@ -115,3 +115,47 @@ TEST_CASE("what a bead's model is off by is no loss, though the noise turns out 
   REQUIRE_MESSAGE(d, d.error());
   check_explained_by(*d, "point-mass", "bending-stiffness");
 }
+
+TEST_CASE(
+    "searches in the same recordings remember what each effect does alone, and give up after a first one that leaves too much") {
+  rosin::rig_burden burden;
+  burden.sensors.crosstalk = 0.02, burden.sensors.skew_s = 3e-6;
+  std::vector<rosin::pluck_take> takes;
+  for (const double force_N : {1.0, 0.6})
+    takes.push_back(
+        test::recorded(*rosin::simulate_pluck(test::plucked_rig, burden,
+                                              {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.04}),
+                       force_N, takes.size()));
+  const rosin::pluck_guess guess{.fundamental_Hz = 660};
+  const rosin::pluck_options options{.internal_loss = false};
+  const auto declared = rosin::fit_plucks(takes, guess, options, 0.95);
+  REQUIRE_MESSAGE(declared, declared.error());
+  const rosin::string_facts facts{declared->value[0], takes[0].rate_Hz, declared->limits.stop_Hz, 0.175, 0.314, takes.size()};
+  const std::vector all{rosin::crosstalk_effect(facts), rosin::skew_effect(facts)};
+  const rosin::pluck_diagnosis plain{
+      {takes, guess, options, declared->layout}, *declared, {}, {}, {}, {}, {}, {}, false, true, 0, 0, 0, {}};
+
+  rosin::detail::search_memory memory;
+  const auto both = rosin::detail::searched(plain, all, 3, memory).first;
+  REQUIRE(both.best.effects.size() == 2);
+  REQUIRE(memory.first.size() == 2);
+  CHECK(memory.first_leaves() > 10);
+  CHECK(memory.first.front().effects.back().name == both.best.effects.front().name);
+
+  // Without the better one: what the other does alone is remembered, or tried where it is not.
+  const auto other = memory.first.back().effects.back();
+  rosin::detail::search_memory of_better{.first = {memory.first.front()}};
+  const double left = memory.first.back().quality.inflation();
+  for (auto* known : {&memory, &of_better}) {
+    const auto less = rosin::detail::searched(plain, {other}, 3, *known).first;
+    REQUIRE(less.best.effects.size() == 1);
+    CHECK(less.best.effects[0].name == other.name);
+    CHECK(less.best.quality.inflation() < 1.01 * left);
+  }
+  CHECK(memory.first.size() == 2);
+
+  rosin::detail::search_memory brief{.stop_above = 0.9 * memory.first_leaves()};
+  CHECK(rosin::detail::searched(plain, all, 3, brief).first.best.effects.size() == 1);
+  rosin::detail::search_memory patient{.stop_above = 1.1 * memory.first_leaves()};
+  CHECK(rosin::detail::searched(plain, all, 3, patient).first.best.effects.size() == 2);
+}

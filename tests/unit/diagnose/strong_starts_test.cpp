@@ -18,10 +18,11 @@ TEST_CASE("a bead of a ninth of the string's mass is begun with where it is") {
   rosin::scene_data data{{}, {.fundamental_Hz = 663}, options, layout};
   for (std::size_t t = 0; t < 2; ++t) data.takes.push_back(test::scene_pluck(layout, catalogue, truth, t, 3e-4, 3 + t));
   rosin::scene_fit declared;
+  rosin::detail::known_starts none;
   declared.quality.residual_ratio = {0.2, 0.2};
-  CHECK(rosin::detail::strong_starts(data, declared, catalogue, {1e-3, 1e-3}).empty());  // the ordinary way will do
+  CHECK(rosin::detail::strong_starts(data, declared, catalogue, {1e-3, 1e-3}, none).empty());  // the ordinary way will do
   declared.quality.residual_ratio = {0.6, 0.5};
-  const auto starts = rosin::detail::strong_starts(data, declared, catalogue, {1e-3, 1e-3});
+  const auto starts = rosin::detail::strong_starts(data, declared, catalogue, {1e-3, 1e-3}, none);
   REQUIRE_FALSE(starts.empty());
   const auto near = [&](const auto& s) {
     return std::abs(s.value[layout.size()] - place) < 0.03 && std::abs(std::log(s.value[layout.size() + 1] / mass)) < 0.75;
