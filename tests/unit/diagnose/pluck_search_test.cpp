@@ -117,7 +117,8 @@ TEST_CASE("what a bead's model is off by is no loss, though the noise turns out 
 }
 
 TEST_CASE(
-    "searches in the same recordings remember what each effect does alone, and give up after a first one that leaves too much") {
+    "searches in the same recordings remember what each effect does alone, and give up after a first one that leaves too much" *
+    doctest::test_suite("long")) {
   rosin::rig_burden burden;
   burden.sensors.crosstalk = 0.02, burden.sensors.skew_s = 3e-6;
   std::vector<rosin::pluck_take> takes;
