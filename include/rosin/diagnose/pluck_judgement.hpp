@@ -6,7 +6,7 @@
 // leaves mere noise of the fitted takes, six times the noise is asked alone; of two effects or more always twice it). A mismatch
 // needs no name: it is also where they are off by more than 0.6 of the noise, and where what rings is noisier than what was held.
 // What does not explain is a part of the answer where it leaves less than half of what there was; several together where they leave
-// less than a twentieth, or twice the noise: what it takes more than one effect to come near is something else. They judge the
+// less than a twentieth, or five times the noise: what it takes more than one effect to come near is something else. They judge the
 // likeliest of the models that were not taken as well.
 //
 #pragma once
@@ -120,7 +120,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
                  was > std::max(0.6 * d.floor, d.data.options.causality ? least_told(d.data) : 0.0);
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   d.mismatched = d.mismatched && !(d.explained && d.has_ordinary_effects_only());
-  const bool stand_in = d.best.effects.size() > 1 && excess > std::max(most_left * d.floor, 0.05 * was);
+  const bool stand_in = d.best.effects.size() > 1 && excess > std::max(5 * d.floor, 0.05 * was);
   if (d.explained || (excess <= 0.5 * was && !stand_in)) return;
   d.best = plain;  // no part of the answer; the ranking keeps it
   d.found_gain.clear(), d.alternatives.clear(), d.after = d.before;
