@@ -123,6 +123,12 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
     if (other && other->best.quality.inflation() < found.quality.inflation()) return other;
   }
   if (d.mismatched) judge_ranking(d, judged, noise);
+  return d;
+}
+
+/// Without what is no part of the answer, and with the place where the rest acts.
+[[nodiscard]] inline pluck_diagnosis concluded(pluck_diagnosis d) {
+  drop_what_is_no_part(d);
   if (!d.explained) d.mismatch.place = place_of_residual(d.data, d.best, d.mismatch.take);
   return d;
 }
@@ -136,14 +142,14 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
                                                               const pluck_options& options,
                                                               const detail::effects_for& catalogue_for, int most_effects = 3) {
   auto d = detail::diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects);
-  if (!d || !d->mismatched) return d;
-  const auto cleaned = without_slow_noise(*d, held);
-  if (!cleaned) return d;
+  if (!d) return d;
+  const auto cleaned = d->mismatched ? without_slow_noise(*d, held) : std::nullopt;
+  if (!cleaned) return detail::concluded(*std::move(d));
   auto again =
       detail::diagnose_as_recorded(cleaned->takes, cleaned->held, guess, options, catalogue_for, most_effects, cleaned->over);
-  if (!again) return d;
+  if (!again) return detail::concluded(*std::move(d));
   again->slow_noise = cleaned->over;
-  return again;
+  return detail::concluded(*std::move(again));
 }
 
 /// The catalogue without what the declared model already contains.

@@ -6,7 +6,7 @@
 // leaves mere noise of the fitted takes, six times the noise is asked alone; of two effects or more always twice it). A mismatch
 // needs no name: it is also where they are off by more than 0.6 of the noise, and where what rings is noisier than what was held.
 // What does not explain is a part of the answer where it leaves less than half of what there was; several together where they leave
-// less than a twentieth, or five times the noise: what it takes more than one effect to come near is something else. They judge the
+// less than a twentieth, or twice the noise: what it takes more than one effect to come near is something else. They judge the
 // likeliest of the models that were not taken as well.
 //
 #pragma once
@@ -94,11 +94,17 @@ inline void judge_ranking(pluck_diagnosis& d, const std::vector<pluck_take>& jud
   }
 }
 
+/// Of the noise: who may take several names has to leave less.
+inline constexpr double most_left_by_several = 2;
+
+/// What is left once the noise's share is taken off, rms.
+[[nodiscard]] inline double beyond(double floor, double x) { return std::sqrt(std::max(0.0, x * x - floor * floor)); }
+
 /// Before and after on takes that were not fitted, and whether that is an explanation. `noise_seen`: before the releases as well;
 /// much noise that nothing else bears out may be what the model leaves.
 inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool noise_seen, bool modulated) {
   constexpr double much_noise = 0.05;
-  const double most_left = d.best.effects.size() > 1 ? 2 : 6;  // of the floor: who may take several names has to leave less
+  const double most_left = d.best.effects.size() > 1 ? most_left_by_several : 6;  // of the floor
   const bool brief = d.best.falls_short();
   if (brief) d.base.horizon_periods = d.best.horizon_periods = 1e9;
   scene_fit plain = d.base;
@@ -109,8 +115,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
     d.held_out.push_back(take.name);
   }
   for (double* x : {&d.before, &d.after, &d.floor}) *x = std::sqrt(*x / static_cast<double>(judged.size()));
-  const auto beyond_noise = [&](double x) { return std::sqrt(std::max(0.0, x * x - d.floor * d.floor)); };
-  const double excess = beyond_noise(d.after), was = beyond_noise(d.before), left = d.best.quality.inflation();
+  const double excess = beyond(d.floor, d.after), was = beyond(d.floor, d.before), left = d.best.quality.inflation();
   const bool doubtful = !noise_seen && d.floor > much_noise, known_ends = d.data.layout.has_ends();  // never to the last digit
   const bool complete = !doubtful && !brief &&
                         ((left == 1.0 && !modulated && excess < most_left * d.floor) ||
@@ -120,9 +125,17 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
                  was > std::max(0.6 * d.floor, d.data.options.causality ? least_told(d.data) : 0.0);
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   d.mismatched = d.mismatched && !(d.explained && d.has_ordinary_effects_only());
-  const bool stand_in = d.best.effects.size() > 1 && excess > std::max(5 * d.floor, 0.05 * was);
-  if (d.explained || (excess <= 0.5 * was && !stand_in)) return;
-  d.best = plain;  // no part of the answer; the ranking keeps it
+}
+
+/// What does not explain is no part of the answer where it leaves too much. Last of all: by a model without it, what it does would
+/// pass for noise.
+inline void drop_what_is_no_part(pluck_diagnosis& d) {
+  if (d.explained) return;
+  const double excess = beyond(d.floor, d.after), was = beyond(d.floor, d.before);
+  const bool stand_in = d.best.effects.size() > 1 && excess > std::max(most_left_by_several * d.floor, 0.05 * was);
+  if (excess <= 0.5 * was && !stand_in) return;
+  const double horizon = d.best.horizon_periods;
+  d.best = d.base, d.best.horizon_periods = horizon;
   d.found_gain.clear(), d.alternatives.clear(), d.after = d.before;
 }
 

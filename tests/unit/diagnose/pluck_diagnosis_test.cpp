@@ -97,13 +97,10 @@ TEST_CASE("wires that let go over some microseconds, one longer than another, ar
 TEST_CASE("a loss that grows with frequency is none to the air of less than nothing" * doctest::test_suite("long")) {
   auto rig = test::plucked_rig;
   rig.string.loss.internal_s = 3e-8;
-  std::vector<rosin::pluck_take> takes;
-  for (const double force_N : {1.0, 0.5, 0.75})
-    takes.push_back(
-        test::recorded(*rosin::simulate_pluck(rig, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.1}),
-                       force_N, takes.size()));
-  const std::vector held{takes.back()};
-  takes.pop_back();
+  auto takes = test::recorded_plucks({1, 0.5, 0.75}, [&](double force_N) {
+    return rosin::simulate_pluck(rig, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.1});
+  });
+  const auto held = test::last_of(takes);
   const auto d = rosin::diagnose_plucks(
       takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
         const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};
@@ -125,13 +122,10 @@ TEST_CASE(
     rosin::rig_burden burden;
     if (heavy) burden.string.supports[1] = {0.05, 60, 20};
     else burden.string.ends[1].modes = {rosin::overdamped_mode(0.003, 40, 1e6)};
-    std::vector<rosin::pluck_take> takes;
-    for (const double force_N : {1.0, 0.5, 0.75})
-      takes.push_back(test::recorded(
-          *rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.15}),
-          force_N, takes.size()));
-    const std::vector held{takes.back()};
-    takes.pop_back();
+    auto takes = test::recorded_plucks({1, 0.5, 0.75}, [&](double force_N) {
+      return rosin::simulate_pluck(rig, burden, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.15});
+    });
+    const auto held = test::last_of(takes);
     const auto d = rosin::diagnose_plucks(
         takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
           const rosin::string_facts facts{fit.value[0],        takes[0].rate_Hz, fit.limits.stop_Hz, rig.string.impedance_Ns_m(),

@@ -56,14 +56,11 @@ TEST_CASE("pluck judgement: two effects that together come near what is neither 
           doctest::test_suite("long")) {
   rosin::rig_burden burden;
   burden.string.loads = {{0.58, 6e-6, 0, 0}};
-  std::vector<rosin::pluck_take> takes;
-  for (const double force_N : {1.0, 0.5, 0.75})
-    takes.push_back(
-        test::recorded(*rosin::simulate_pluck(test::plucked_rig, burden,
-                                              {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.06}),
-                       force_N, takes.size()));
-  const std::vector held{takes.back()};
-  takes.pop_back();
+  auto takes = test::recorded_plucks({1, 0.5, 0.75}, [&](double force_N) {
+    return rosin::simulate_pluck(test::plucked_rig, burden,
+                                 {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.06});
+  });
+  const auto held = test::last_of(takes);
   const auto d = rosin::diagnose_plucks(
       takes, held, {.fundamental_Hz = 660}, {.internal_loss = false}, [&](const rosin::pluck_fit_result& fit) {
         const rosin::string_facts facts{fit.value[0], takes[0].rate_Hz, fit.limits.stop_Hz, 0.175, 0.314, takes.size()};

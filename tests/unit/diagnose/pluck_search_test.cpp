@@ -121,12 +121,10 @@ TEST_CASE(
     doctest::test_suite("long")) {
   rosin::rig_burden burden;
   burden.sensors.crosstalk = 0.02, burden.sensors.skew_s = 3e-6;
-  std::vector<rosin::pluck_take> takes;
-  for (const double force_N : {1.0, 0.6})
-    takes.push_back(
-        test::recorded(*rosin::simulate_pluck(test::plucked_rig, burden,
-                                              {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.04}),
-                       force_N, takes.size()));
+  const auto takes = test::recorded_plucks({1, 0.6}, [&](double force_N) {
+    return rosin::simulate_pluck(test::plucked_rig, burden,
+                                 {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.04});
+  });
   const rosin::pluck_guess guess{.fundamental_Hz = 660};
   const rosin::pluck_options options{.internal_loss = false};
   const auto declared = rosin::fit_plucks(takes, guess, options, 0.95);

@@ -41,6 +41,19 @@ inline rosin::pluck_take modal_pluck(double force_N, std::uint64_t seed, double 
                   force_N, seed);
 }
 
+/// Plucks as strong as these, each by made(strength).
+inline std::vector<rosin::pluck_take> recorded_plucks(const std::vector<double>& strengths_N, const auto& made) {
+  std::vector<rosin::pluck_take> out;
+  for (const double force_N : strengths_N) out.push_back(recorded(*made(force_N), force_N, out.size()));
+  return out;
+}
+/// The last of them, set aside.
+inline std::vector<rosin::pluck_take> last_of(std::vector<rosin::pluck_take>& takes) {
+  std::vector<rosin::pluck_take> out{takes.back()};
+  takes.pop_back();
+  return out;
+}
+
 /// A pluck of a scene, from its own lines: for what has to come back exactly.
 inline rosin::pluck_take scene_pluck(const rosin::pluck_layout& layout, const std::vector<rosin::pluck_effect>& effects,
                                      const Eigen::VectorXd& v, std::size_t which, double noise_N, std::uint64_t seed) {
