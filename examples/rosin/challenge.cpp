@@ -231,7 +231,8 @@ void add_challenge(CLI::App& app, exit_code& result) {
   command->footer(
       "The rigs are stepped mode by mode, with beads, fingers, supports and the contact solved for in every step; nothing of\n"
       "that is shared with the closed forms that a diagnosis fits. A folder rigs/ with truth/NAME.json beside it is scored "
-      "likewise.");
+      "likewise.\n"
+      "Exit status: 0 done, whatever the score, 2 bad input or usage, or a rig that could not be made.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

@@ -136,7 +136,8 @@ void add_check(CLI::App& app, exit_code& result) {
   command->footer(
       "Reads every take and looks for clipping, lost samples, silence, offset, noise, mains hum, swapped or inverted\n"
       "channels, a wrong sample rate or pitch, and plucks that do not ring. Each finding names file, channel and time,\n"
-      "and says what to do. Defaults that a calculation would use are listed too.");
+      "and says what to do. Defaults that a calculation would use are listed too.\n"
+      "Exit status: 0 nothing wrong, 1 errors were found (with --strict warnings, too), 2 nothing could be read.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

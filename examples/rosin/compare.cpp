@@ -139,7 +139,8 @@ void add_compare(CLI::App& app, exit_code& result) {
   command->footer(
       "Delta is Eq. (12) of Woodhouse, Schumacher & Garoff (2000): sqrt(sum (a - b)^2 / (sum a^2 + sum b^2)), means taken out.\n"
       "A common scale (the wires' strength, which no recording tells) is stated apart. Empty fields at the beginning and at\n"
-      "the end are left out, and so is the response time of the low-pass at either end; one in between is an error.");
+      "the end are left out, and so is the response time of the low-pass at either end; one in between is an error.\n"
+      "Exit status: 0 done, 1 more than --at-most, 2 nothing could be compared.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

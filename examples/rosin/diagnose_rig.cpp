@@ -104,6 +104,9 @@ void add_place(const rosin::acting_place& place, rig_diagnosis& d) {
     case rosin::acting::far_end:
       d.position = 1, d.acts = "at the far end";
       break;
+    case rosin::acting::with_release:
+      d.position = place.position, d.acts = "where the string is plucked, with the release, or alike in both channels";
+      break;
     case rosin::acting::near_channel:
       d.acts = "in the near channel";
       break;

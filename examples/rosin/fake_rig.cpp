@@ -258,7 +258,9 @@ void add_fake_rig(CLI::App& app, exit_code& result) {
       ->capture_default_str();
   command->add_option("--packet", given->packet_frames, "Frames in a packet")->check(CLI::Range(1, 500))->capture_default_str();
   command->add_option("--seconds", given->seconds, "Ends after this time; at Ctrl-C if left out")->type_name("S");
-  command->footer("A line on standard input with the name of a take plays it: this is the hand that pulls the wire.");
+  command->footer(
+      "A line on standard input with the name of a take plays it: this is the hand that pulls the wire.\n"
+      "Exit status: 0 done, 2 bad input, or a line that broke.");
   command->callback([given, &result] { result = run(*given); });
 }
 

@@ -265,7 +265,8 @@ void add_simulate(CLI::App& app, exit_code& result) {
       "torsion and the law of friction that [model] and [friction] name; sensors whose gains are off within their tolerances, "
       "noise, AC coupling and converters.\n"
       "[simulate] sets rate, duration, bits, noise, seed, and with nominal_scatter = true lets the string differ from what the\n"
-      "file declares. The rig.toml beside the recordings tells none of that; the truth goes to another folder.");
+      "file declares. The rig.toml beside the recordings tells none of that; the truth goes to another folder.\n"
+      "Exit status: 0 done, 2 bad input or usage, or a file that could not be written.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

@@ -112,7 +112,7 @@ inline reconstructed bring_back(const rosin::calibration& plucked, const rosin::
   auto& t = out.take;
   t.rate_Hz = rate_Hz, t.delay_s = tuned.at.delay_s, t.stiffness_s2 = tuned.at.stiffness_s2,
   t.impedance_Ns_m = tuned.at.impedance_Ns_m;
-  t.inverse_q = tuned.at.loss.inverse_q(0.5 / (t.delay_s[0] + t.delay_s[1]));
+  t.loss = tuned.at.loss;
   t.force_sd_N = sd.force_sd_N[out.force.size() / 2], t.velocity_sd_m_s = sd.velocity_sd_m_s[out.force.size() / 2],
   t.edge_Hz = limits.stop_Hz;
   return out;

@@ -12,7 +12,7 @@ commands=$("$tool" --help | sed -n '/^Subcommands:/,/^$/p' | sed -n 's/^  \([a-z
 [ -n "$commands" ] || { echo "FAILED: no commands in the help"; failures=1; }
 for command in $commands; do
   expect 0 "$command" --help
-  says "Usage: rosin $command" "--help"
+  says "Usage: rosin $command" "--help" "Exit status: 0 "
   # every option and every positional says what it is
   bare=$(sed -n '/^\(Options\|Positionals\):/,/^$/p' out.txt | grep -E '^  [^ ].{0,31}$' | grep -vE '  [A-Z]' || true)
   wrapped=$(sed -n '/^\(Options\|Positionals\):/,/^$/p' out.txt | grep -cE '^ {20,}[^ ]' || true)

@@ -11,6 +11,9 @@
 // At the right place the part of (r_near, r_far) across that direction is noise; the smallest sum of its squares tells the place.
 // Nuisances of the fit (release, strength, pitch) may go along: the same part of their columns is fitted to it.
 //
+// What is looked at begins after the release. From then on a force on the string at x and, half a period later, its opposite at
+// 1 - x are one motion: what the release itself does is found at either (where_plucked()).
+//
 #pragma once
 
 #include <rosin/calibrate/damped_spectrum.hpp>
@@ -20,8 +23,9 @@
 
 namespace rosin {
 
-/// What acts where: on the string, at one of its ends, in one of the channels.
-enum class acting { on_string, near_end, far_end, near_channel, far_channel };
+/// What acts where: on the string, at one of its ends, in one of the channels, or where the string is plucked, as does a release
+/// that is not clean, or whatever both channels have in common.
+enum class acting { on_string, near_end, far_end, near_channel, far_channel, with_release };
 
 struct acting_place {
   acting on = acting::on_string;
@@ -230,6 +234,15 @@ private:
   std::vector<nuisance_doubt> doubts_;
 };
 
+/// The place, told for the release if it is where the string is plucked or the mirror image of that.
+[[nodiscard]] inline acting_place where_plucked(acting_place found, double contact) noexcept {
+  constexpr double near = 1e-3;
+  if (found.on == acting::on_string &&
+      std::min(std::abs(found.position - contact), std::abs(1 - found.position - contact)) < near)
+    found.on = acting::with_release, found.position = contact;
+  return found;
+}
+
 /// Where what a fit leaves of one of its takes acts, over the first periods; nothing where that is mostly noise or no single
 /// place explains nearly all of it.
 [[nodiscard]] inline std::optional<acting_place> place_of_residual(const scene_data& data, const scene_fit& fit,
@@ -245,7 +258,7 @@ private:
   const std::array<double, 2> gain{pluck_layout::gain(fit.value, 0), pluck_layout::gain(fit.value, 1)};
   const place_search search(scene, gain, problem.limits(), detail::left_by(problem, fit.value, take), fit.quality.noise);
   if (!search.is_mismatch()) return std::nullopt;
-  const acting_place found = search();
+  const acting_place found = where_plucked(search(), fit.value[data.layout.position(take)]);
   return search.is_accounted_for(found) ? std::optional(found) : std::nullopt;
 }
 
