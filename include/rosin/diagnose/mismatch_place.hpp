@@ -31,6 +31,7 @@ struct acting_place {
   acting on = acting::on_string;
   double position = 0.5, sd = 0;  ///< fraction of the length from the near end; on the string only
   double left = 1;                ///< share of the mismatch's power that nothing there explains
+  double left_elsewhere = 1;      ///< the same of the best place of another kind
 };
 
 /// How far a nuisance is from what is known of it, and that knowledge's standard deviation; sd 0: nothing is known.
@@ -98,13 +99,12 @@ public:
 
   /// The place that leaves least.
   [[nodiscard]] acting_place operator()() const {
-    acting_place best;
-    best.left = 2;
+    std::vector<acting_place> all{on_string()};
     for (const acting on : {acting::near_end, acting::far_end, acting::near_channel, acting::far_channel})
-      if (const double l = across(on, 0) / power_; l < best.left)
-        best = {on, on == acting::far_end || on == acting::far_channel ? 1.0 : 0.0, 0, l};
-    const acting_place found = on_string();
-    return found.left < best.left ? found : best;
+      all.push_back({on, on == acting::far_end || on == acting::far_channel ? 1.0 : 0.0, 0, across(on, 0) / power_});
+    std::nth_element(all.begin(), all.begin() + 1, all.end(), [](const auto& a, const auto& b) { return a.left < b.left; });
+    all[0].left_elsewhere = all[1].left;
+    return all[0];
   }
   /// The same of places on the string, between two of them.
   [[nodiscard]] acting_place on_string(double from = 0, double to = 1) const {
@@ -114,7 +114,8 @@ public:
     double least = 1e300;
     for (int i = first; i <= last; ++i)
       if (const double l = across(acting::on_string, static_cast<double>(i) / grid); l < least) least = l, low = i;
-    return refined(static_cast<double>(low - 1) / grid, static_cast<double>(low + 1) / grid);
+    return refined(std::max(static_cast<double>(low - 1) / grid, at_end),
+                   std::min(static_cast<double>(low + 1) / grid, 1 - at_end));
   }
 
   /// How much of each nuisance is in what is left, the action at that place taken out.
@@ -132,6 +133,13 @@ public:
   }
   /// There is more than noise, which is taken for white.
   [[nodiscard]] bool is_mismatch() const { return 2 * noise_power_ < most_noise * power_; }
+  /// No other kind of place does nearly as well, and it accounts for nearly all that the nuisances by themselves do not, which
+  /// is no small part of the mismatch: where they could take up most of it, the fit was led astray, and so is the place.
+  [[nodiscard]] bool is_clear(const acting_place& at) const {
+    const double beside = power_beside_nuisances();
+    return beside > least_beside * power_ && at.left < clearly_less * at.left_elsewhere &&
+           at.left * power_ < most_left * beside + 1.5 * noise_power_;
+  }
   /// What acts at that place is nearly all of it. Of the noise one of two unknowns is left.
   [[nodiscard]] bool is_accounted_for(const acting_place& at) const { return at.left < most_left + 1.5 * noise_power_ / power_; }
 
@@ -141,7 +149,8 @@ public:
   }
 
 private:
-  static constexpr double faded = 12, most_noise = 0.25, most_left = 0.1;
+  static constexpr double faded = 12, most_noise = 0.25, most_left = 0.1, clearly_less = 0.3, least_beside = 0.1;
+  static constexpr double at_end = 0.005;  // nearer to an end than that is what acts in its channel
   static constexpr std::size_t most_bins = 2000;
   using spectrum_pair = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 2>;
 
@@ -191,9 +200,9 @@ private:
         out.second(2 * rows + k, k) = std::sqrt(row_variance()) / sd, out.first[2 * rows + k] = off * out.second(2 * rows + k, k);
     return out;
   }
-  /// (J^T J)^-1, what no column tells left small.
+  /// (J^T J)^-1, what no column tells left small; zero for a column that is (of one channel's gain, across the other).
   [[nodiscard]] static Eigen::MatrixXd inverse_normal(const Eigen::MatrixXd& moved) {
-    const Eigen::VectorXd scale = moved.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+    const Eigen::VectorXd scale = moved.colwise().norm().unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0; });
     const Eigen::MatrixXd unit = moved * scale.asDiagonal();
     Eigen::MatrixXd normal = unit.transpose() * unit;
     normal.diagonal().array() += 1e-10;
@@ -202,6 +211,18 @@ private:
   /// Least squares of the first by the second.
   [[nodiscard]] static Eigen::VectorXd fitted(const Eigen::VectorXd& left, const Eigen::MatrixXd& moved) {
     return inverse_normal(moved) * (moved.transpose() * left);
+  }
+  /// Power of both channels, with the nuisances' part taken out.
+  [[nodiscard]] double power_beside_nuisances() const {
+    const auto parts = [](const spectrum_pair& r) {
+      Eigen::VectorXd out(4 * r.rows());
+      out << r.col(0).real(), r.col(0).imag(), r.col(1).real(), r.col(1).imag();
+      return out;
+    };
+    const Eigen::VectorXd left = parts(residual_);
+    Eigen::MatrixXd moved(left.size(), static_cast<Eigen::Index>(nuisances_.size()));
+    for (std::size_t k = 0; k < nuisances_.size(); ++k) moved.col(static_cast<Eigen::Index>(k)) = parts(nuisances_[k]);
+    return nuisances_.empty() ? left.squaredNorm() : (left - moved * fitted(left, moved)).squaredNorm();
   }
   /// Power across the shares of a place, with the nuisances' part taken out.
   [[nodiscard]] double across(acting on, double x) const {
@@ -243,8 +264,8 @@ private:
   return found;
 }
 
-/// Where what a fit leaves of one of its takes acts, over the first periods; nothing where that is mostly noise or no single
-/// place explains nearly all of it.
+/// Where what a fit leaves of one of its takes acts, over the first periods; nothing where that is mostly noise, or no single place
+/// explains nearly all of it, or one of another kind does nearly as well.
 [[nodiscard]] inline std::optional<acting_place> place_of_residual(const scene_data& data, const scene_fit& fit,
                                                                    std::size_t take) {
   constexpr double most_periods = 24, least_periods = 2;
@@ -259,7 +280,7 @@ private:
   const place_search search(scene, gain, problem.limits(), detail::left_by(problem, fit.value, take), fit.quality.noise);
   if (!search.is_mismatch()) return std::nullopt;
   const acting_place found = where_plucked(search(), fit.value[data.layout.position(take)]);
-  return search.is_accounted_for(found) ? std::optional(found) : std::nullopt;
+  return search.is_accounted_for(found) && search.is_clear(found) ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace rosin
