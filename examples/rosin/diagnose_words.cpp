@@ -181,7 +181,7 @@ std::string sentence(const rig_diagnosis& d) {
   if (d.left_in_strokes) return out + " That does not account for all of it. " + in_words(*d.left_in_strokes);
   const std::string where = d.take.empty() ? ""
                                            : " It shows in " + d.take + (d.channel.empty() ? "" : ", channel " + d.channel) +
-                                                 (d.acts.empty() ? "." : "; both ends agree that it acts " + d.acts + ".");
+                                                 (d.acts.empty() ? "." : "; both ends together say that it acts " + d.acts + ".");
   return (out.empty() ? "" : out + " ") +
          std::string(out.empty() ? "Recordings and simulation differ, and nothing in the catalogue accounts for it."
                                  : "That does not account for all of it.") +
