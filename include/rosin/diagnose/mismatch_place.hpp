@@ -280,7 +280,7 @@ private:
   const place_search search(scene, gain, problem.limits(), detail::left_by(problem, fit.value, take), fit.quality.noise);
   if (!search.is_mismatch()) return std::nullopt;
   const acting_place found = where_plucked(search(), fit.value[data.layout.position(take)]);
-  return search.is_accounted_for(found) && search.is_clear(found) ? std::optional(found) : std::nullopt;
+  return search.is_clear(found) ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace rosin

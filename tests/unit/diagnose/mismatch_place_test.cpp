@@ -41,19 +41,32 @@ rosin::place_search search_of(const rosin::unexplained_part& part) {
 rosin::acting_place place_of(const rosin::unexplained_part& part) { return search_of(part)(); }
 rosin::acting_place place_of(const rosin::rig_burden& burden) { return place_of(difference(burden)); }
 
-/// Both recordings behind one all-pass filter less those without, from nearly half a period behind the release on.
+/// y = b0 x + b1 x' + b2 x'' - a1 y' - a2 y''
+void filter(std::vector<double>& x, const std::array<double, 3>& b, double a1, double a2) {
+  std::array<double, 2> in{}, out{};
+  for (double& v : x) {
+    const double y = b[0] * v + b[1] * in[0] + b[2] * in[1] - a1 * out[0] - a2 * out[1];
+    in = {v, in[0]}, out = {y, out[0]}, v = y;
+  }
+}
+
+/// Both channels behind one all-pass filter at 8 kHz. turn: 2 pi / rate.
+void filter_alike(std::array<std::vector<double>, 2>& x, double turn) {
+  const double r = 0.8, middle = -2 * r * std::cos(8e3 * turn);
+  for (auto& channel : x) filter(channel, {r * r, middle, 1}, middle, r * r);
+}
+
+/// What that changes, from nearly half a period behind the release on.
 rosin::unexplained_part filtered_alike() {
   const auto heard = rosin::simulate_pluck(test::plucked_rig, {}, {.position = 0.3, .release_s = 0.004, .duration_s = 0.03});
   rosin::unexplained_part out{{}, {}, heard->sample_rate_Hz};
-  const double r = 0.8, turn = 2 * r * std::cos(2 * 3.14159265358979323846 * 8e3 / out.rate_Hz);
   const auto from = static_cast<std::size_t>((0.004 + 0.48 / test::plucked_rig.string.fundamental_Hz) * out.rate_Hz);
+  const std::array<std::vector<double>, 2> x{heard->force_near_N, heard->force_far_N};
+  auto y = x;
+  filter_alike(y, 2 * 3.14159265358979323846 / out.rate_Hz);
   for (std::size_t c = 0; c < 2; ++c) {
-    const auto& x = c == 0 ? heard->force_near_N : heard->force_far_N;
-    std::vector<double> y(x);
-    for (std::size_t i = 2; i < x.size(); ++i)
-      y[i] = r * r * x[i] - turn * x[i - 1] + x[i - 2] + turn * y[i - 1] - r * r * y[i - 2];
-    out.force_N[c].resize(static_cast<Eigen::Index>(x.size() - from));
-    for (std::size_t i = from; i < x.size(); ++i) out.force_N[c][static_cast<Eigen::Index>(i - from)] = y[i] - x[i];
+    out.force_N[c].resize(static_cast<Eigen::Index>(x[c].size() - from));
+    for (std::size_t i = from; i < x[c].size(); ++i) out.force_N[c][static_cast<Eigen::Index>(i - from)] = y[c][i] - x[c][i];
   }
   return out;
 }
@@ -116,15 +129,6 @@ TEST_CASE("mismatch: what both channels do alike acts where the string is plucke
 
 namespace {
 
-/// y = b0 x + b1 x' + b2 x'' - a1 y' - a2 y''
-void filter(std::vector<double>& x, const std::array<double, 3>& b, double a1, double a2) {
-  std::array<double, 2> in{}, out{};
-  for (double& v : x) {
-    const double y = b[0] * v + b[1] * in[0] + b[2] * in[1] - a1 * out[0] - a2 * out[1];
-    in = {v, in[0]}, out = {y, out[0]}, v = y;
-  }
-}
-
 /// Where the whole diagnosis, by a catalogue that knows nothing, says that it acts.
 std::optional<rosin::acting_place> told_of(const rosin::rig_burden& burden, auto alter) {
   auto takes = test::recorded_plucks({1, 0.5, 0.75}, [&](double force_N) {
@@ -152,11 +156,7 @@ TEST_CASE("mismatch: where the fit's nuisances have taken up what they can, only
     const double w = 5e3 * turn, a = std::sin(w) / 10, whole = 1 + a, middle = -2 * std::cos(w) / whole;
     filter(x[1], {1 / whole, middle, 1 / whole}, middle, (1 - a) / whole);
   };
-  const auto all_pass = [](auto& x, double turn) {
-    const double r = 0.8, middle = -2 * r * std::cos(8e3 * turn);
-    for (auto& channel : x) filter(channel, {r * r, middle, 1}, middle, r * r);
-  };
-  const auto touched = told_of(finger, as_is), sounded = told_of({}, notch), alike = told_of({}, all_pass);
+  const auto touched = told_of(finger, as_is), sounded = told_of({}, notch), alike = told_of({}, filter_alike);
   REQUIRE(touched);
   CHECK(touched->on == rosin::acting::on_string);
   CHECK(std::abs(touched->position - 0.41) < 0.003);
