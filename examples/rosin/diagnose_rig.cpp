@@ -108,10 +108,10 @@ void add_place(const rosin::acting_place& place, rig_diagnosis& d) {
       d.position = place.position, d.acts = "where the string is plucked, with the release, or alike in both channels";
       break;
     case rosin::acting::near_channel:
-      d.channel = "near", d.acts = "in the near channel";
+      d.acts = "in the near channel";
       break;
     case rosin::acting::far_channel:
-      d.channel = "far", d.acts = "in the far channel";
+      d.acts = "in the far channel";
       break;
   }
 }

@@ -126,10 +126,18 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   return d;
 }
 
-/// Without what is no part of the answer, and with the place where the rest acts.
+/// Without what is no part of the answer, and with the place where the rest acts: if that is a channel, it is looked at there.
 [[nodiscard]] inline pluck_diagnosis concluded(pluck_diagnosis d) {
   drop_what_is_no_part(d);
-  if (!d.explained) d.mismatch.place = place_of_residual(d.data, d.best, d.mismatch.take);
+  if (d.explained) return d;
+  const auto place = place_of_residual(d.data, d.best, d.mismatch.take);
+  const bool near = place && place->on == acting::near_channel, far = place && place->on == acting::far_channel;
+  if (near || far) {
+    const double over_noise = d.mismatch.residual_over_noise;
+    d.mismatch = locate(d.data, d.base, 1, {near, far});
+    d.mismatch.residual_over_noise = over_noise;
+  }
+  d.mismatch.place = place;
   return d;
 }
 

@@ -47,8 +47,9 @@ inline std::array<double, 2> band_of(const Eigen::VectorXd& r, double rate_Hz) {
   return {static_cast<double>(low) * width, static_cast<double>(high + 1) * width};
 }
 
-/// Channel, quarter period and band in which the residual of the first periods is largest.
-inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, double noise) {
+/// Channel (of those that are asked), quarter period and band in which the residual of the first periods is largest.
+inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, double noise,
+                             std::array<bool, 2> asked = {true, true}) {
   const auto problem = data.problem(base.effects, base.value, {1000, base.horizon_periods, true, freedom::all}, {1, 1});
   pluck_mismatch m;
   double most = 0, power = 0, count = 0;
@@ -58,7 +59,7 @@ inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, doub
     const auto window = static_cast<Eigen::Index>(std::max(16.0, 0.25 * rate / base.value[0]));
     for (std::size_t c = 0; c < 2; ++c) {
       power += r[c].squaredNorm(), count += static_cast<double>(r[c].size());
-      for (Eigen::Index i = 0; i + window <= r[c].size(); i += window / 2)
+      for (Eigen::Index i = 0; asked[c] && i + window <= r[c].size(); i += window / 2)
         if (const double p = r[c].segment(i, window).squaredNorm(); p > most) {
           most = p;
           m.take = t, m.channel = c;
