@@ -8,7 +8,9 @@
 //
 // A pickup hears each partial by another factor, so each K_n >= 0 is a number of its own, the same for all takes of a string.
 // They are fitted to the soft plucks alone. The hard plucks are then foretold: of them only the base, from 2.5 s on, is used,
-// because no peg stands still between takes. One K for all of them, "power alone", is told beside it.
+// because no peg stands still between takes. One K for all of them, "power alone", is told beside it. What the pickup hears of the
+// first six partials 0.1 s after a hard pluck is told, too: where two plucks are heard alike and glide differently, what stretched the
+// string was not heard.
 //
 //     02_glide_of_hard_plucks NOMINAL_HZ FIGURE.svg SOFT.flac... -- HARD.flac...
 //
@@ -33,7 +35,8 @@ struct moment {
   std::size_t partial;
 };
 
-/// Pitch of each partial that is loud enough, against n times the nominal pitch, every 50 ms.
+/// Pitch of each partial that is loud enough, against n times the nominal pitch, every 50 ms. The motion turns out of the pickup's
+/// plane and back; what is heard of it later was there before, so powers are the greatest from there on.
 std::vector<moment> pitch_track(const std::string& file, double nominal_Hz) {
   const auto heard = real::read_channel(file);
   const auto fit = rosin::fit_pickup(heard.samples, heard.rate_Hz, nominal_Hz, {.partials_at_most = 16});
@@ -61,6 +64,8 @@ std::vector<moment> pitch_track(const std::string& file, double nominal_Hz) {
         track.push_back({t, 1200 * std::log2(pitch[i] / nominal_Hz / static_cast<double>(i + 1)), std::sqrt(power[i] / loudest),
                          Eigen::Map<const powers>(power.data()), i});
   }
+  powers later = powers::Zero();
+  for (auto m = track.rbegin(); m != track.rend(); ++m) m->power = later = later.cwiseMax(m->power);
   return track;
 }
 
@@ -97,6 +102,16 @@ powers not_negative(const centred& sums) {
     for (Eigen::Index i = 0; i < stretching; ++i)
       K[i] = std::max(0.0, K[i] + (sums.right[i] - sums.normal.row(i).dot(K)) / sums.normal(i, i));
   return K;
+}
+
+void told_at_first(const std::vector<moment>& track, const std::array<double, last_partial>& base) {
+  double cents = 0, weight = 0;
+  for (const moment& m : track)
+    if (m.time_s == track.front().time_s && std::isfinite(base[m.partial]))
+      cents += m.weight * (m.cents - base[m.partial]), weight += m.weight;
+  std::printf("     at %.2f s: %.1f cents; power of partials 1 to 6, dB:", track.front().time_s, cents / weight);
+  for (const double p : track.front().power) std::printf(" %.1f", 10 * std::log10(p));
+  std::printf("\n");
 }
 
 powers all_alike(const centred& sums) { return powers::Constant(sums.right.sum() / sums.normal.sum()); }
@@ -147,6 +162,7 @@ int main(int count, char** words) {
     }
     std::printf("hard %-28s left before 2.5 s: %5.2f cents without, %5.2f with K_n, %5.2f with power alone\n", file->c_str(),
                 std::sqrt(before / weight), std::sqrt(after / weight), std::sqrt(after_alike / weight));
+    told_at_first(track, base.cents);
     panels.push_back(std::move(shown));
   }
   panels.resize(std::min<std::size_t>(panels.size(), 2));

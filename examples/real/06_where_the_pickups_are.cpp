@@ -7,7 +7,7 @@
 //
 // and a pluck at q leaves sin(n pi q / L). Stopping the string changes L, not x: x is common to all notes of all strings, q is
 // free in each. Nothing is said of how many pickups are switched on: one is tried, then two. Each string is fitted alone, so that
-// five answers can be compared.
+// five answers can be compared; then all of them together, and together without each in turn.
 //
 //     06_where_the_pickups_are FOLDER [FIGURE.svg]       FOLDER: E4_A4_mp_1.flac ..., string_note_mp_take
 //
@@ -116,11 +116,9 @@ int main(int count, char** words) {
   const std::set<std::filesystem::path> files{std::filesystem::directory_iterator{words[1]}, {}};
   real::panel one{"One pickup: what is left over", "distance from the bridge, m", "dB", {}};
   real::panel two{"Two pickups at once: the best pair of each string", "nearer pickup, m", "farther pickup, m", {}};
-  std::printf("string  notes  no place      one pickup          two pickups\n");
-  for (const plucked_string& s : strings) {
-    const auto notes = read_notes(files, s);
-    if (notes.empty()) return std::printf("%s: no notes of the %s string\n", words[1], s.name), 1;
-    real::series curve{s.name, s.colour, {}, {}, true};
+  std::printf("string      notes  no place      one pickup          two pickups\n");
+  const auto fitted = [&](const std::string& name, const std::vector<note>& notes, const char* colour) {
+    real::series curve{name, colour ? colour : "", {}, {}, true};
     double least = 1e300, at = 0, least_pair = 1e300, near = 0, far = 0;
     for (double x = from_m; x < to_m; x += step_m) {
       const double left = left_over(notes, {x});
@@ -129,10 +127,25 @@ int main(int count, char** words) {
       for (double other = x + 0.01; other < to_m; other += step_m)
         if (const double pair = left_over(notes, {x, other}); pair < least_pair) least_pair = pair, near = x, far = other;
     }
-    std::printf("%-6s  %5zu  %5.2f dB   %5.2f dB at %3.0f mm   %5.2f dB at %3.0f and %3.0f mm\n", s.name, notes.size(),
+    std::printf("%-10s  %5zu  %5.2f dB   %5.2f dB at %3.0f mm   %5.2f dB at %3.0f and %3.0f mm\n", name.c_str(), notes.size(),
                 left_over(notes, {}), least, 1e3 * at, least_pair, 1e3 * near, 1e3 * far);
+    if (!colour) return;
     one.all.push_back(std::move(curve));
-    two.all.push_back({s.name, s.colour, {near}, {far}, false});
+    two.all.push_back({name, colour, {near}, {far}, false});
+  };
+  std::vector<std::vector<note>> each;
+  for (const plucked_string& s : strings) {
+    each.push_back(read_notes(files, s));
+    if (each.back().empty()) return std::printf("%s: no notes of the %s string\n", words[1], s.name), 1;
+    fitted(s.name, each.back(), s.colour);
   }
+  const auto together = [&](std::size_t without) {
+    std::vector<note> all;
+    for (std::size_t i = 0; i < each.size(); ++i)
+      if (i != without) all.insert(all.end(), each[i].begin(), each[i].end());
+    return all;
+  };
+  fitted("all", together(each.size()), "#7a7a7a");
+  for (std::size_t i = 0; i < each.size(); ++i) fitted(std::string{"all but "} + strings[i].name, together(i), nullptr);
   return count < 3 || real::write_figure(words[2], {one, two}) ? 0 : 1;
 }

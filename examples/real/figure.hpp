@@ -108,7 +108,7 @@ inline void write_panel(std::ostream& out, const panel& p, double left) {
   text((x.from + x.to) / 2, 333, p.x_label, "text-anchor='middle'");
   const std::string turned = "text-anchor='middle' transform='rotate(-90 " + number(left + 14) + " 168)'";
   text(left + 14, 168, p.y_label, turned.c_str());
-  double key = x.from;
+  double key = x.from, row = 352;
   for (const series& s : p.all) {
     if (s.joined) {
       out << "<polyline fill='none' stroke-width='1.4' stroke='" << s.colour << "' points='";
@@ -120,8 +120,10 @@ inline void write_panel(std::ostream& out, const panel& p, double left) {
     }
     if (s.name.empty()) continue;
     const std::string look = "fill='" + s.colour + "'";
-    text(key, 352, (s.joined ? "\u2014 " : "\u2022 ") + s.name, look.c_str());
-    key += 5.6 * static_cast<double>(s.name.size()) + 28;
+    const double wide = 5.6 * static_cast<double>(s.name.size()) + 28;
+    if (key > x.from && key + wide > x.to + 28) key = x.from, row += 16;
+    text(key, row, (s.joined ? "\u2014 " : "\u2022 ") + s.name, look.c_str());
+    key += wide;
   }
 }
 
@@ -129,7 +131,7 @@ inline void write_panel(std::ostream& out, const panel& p, double left) {
 inline bool write_figure(const std::string& path, const std::vector<panel>& panels) {
   const auto failed = rosin::write_file(path, rosin::overwrite::allow, [&](std::ostream& out) {
     const double width = 460 * static_cast<double>(panels.size());
-    out << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " << width << " 362' font-family='sans-serif' font-size='11'>\n"
+    out << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " << width << " 378' font-family='sans-serif' font-size='11'>\n"
         << "<rect width='100%' height='100%' fill='white'/>\n";
     for (std::size_t i = 0; i < panels.size(); ++i) write_panel(out, panels[i], 460 * static_cast<double>(i));
     out << "</svg>\n";
