@@ -13,6 +13,7 @@
 
 #include <iostream>
 #include <memory>
+#include <thread>
 
 namespace tool {
 
@@ -21,6 +22,7 @@ namespace {
 struct options {
   std::string rig, json_file, report;
   std::vector<std::string> without;
+  unsigned threads = 0;
   bool force = false, isolability = false;
   double rate_Hz = 128000, noise_N = 3e-4;
 };
@@ -71,10 +73,11 @@ exit_code tell_isolability(const options& given, provenance from) {
   return exit_code::ok;
 }
 
-rosin::outcome<rig_diagnosis> diagnosis_of(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without) {
-  if (!rig.has_both_forces()) return diagnose_pickups_of(rig, from, without);
+rosin::outcome<rig_diagnosis> diagnosis_of(const rosin::rig& rig, provenance& from, const options& given) {
+  if (!rig.has_both_forces()) return diagnose_pickups_of(rig, from, given.without);
+  const unsigned threads = given.threads > 0 ? given.threads : std::max(1U, std::thread::hardware_concurrency());
   progress bar{"diagnosing", diagnosis_steps};
-  return diagnose(rig, from, without, [&] { bar.step(); });
+  return diagnose(rig, from, given.without, static_cast<int>(threads), [&] { bar.step(); });
 }
 
 exit_code run(const options& given, provenance from) {
@@ -87,7 +90,7 @@ exit_code run(const options& given, provenance from) {
     if (const auto why = cannot_draw()) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
-  const auto found = diagnosis_of(folder->rig, from, given.without);
+  const auto found = diagnosis_of(folder->rig, from, given);
   if (!found) return fail(found.error(), as_json);
   if (!given.json_file.empty())
     if (const auto why = save_json(given.json_file, to_json(*found, from), given.force)) return fail(why->message);
@@ -114,6 +117,9 @@ void add_diagnose(CLI::App& app, exit_code& result) {
                    "An effect that the catalogue is not to know (any number): what would be said then?")
       ->check(CLI::IsMember(std::vector<std::string>(rosin::effect_names.begin(), rosin::effect_names.end())).description(""))
       ->type_name("EFFECT");
+  command->add_option("--threads", given->threads, "0: all cores; the diagnosis is the same, only sooner")
+      ->check(CLI::Range(0U, 1024U).description(""))
+      ->capture_default_str();
   auto* isolability =
       command->add_flag("--isolability", given->isolability, "What the plucks of the rig file can tell apart, recorded or not")
           ->excludes("--report");

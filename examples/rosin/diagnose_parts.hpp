@@ -54,7 +54,7 @@ struct plucks_told {
 };
 [[nodiscard]] rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values,
                                                              provenance& from, std::vector<std::string>& warnings,
-                                                             const std::vector<std::string>& without = {});
+                                                             const std::vector<std::string>& without = {}, int threads = 1);
 
 /// A pluck that contradicts the others is what the diagnosis then is about; true if what makes it odd is found, and the catalogue
 /// knows it by name. An obstacle is looked for where the string's impedance is known.

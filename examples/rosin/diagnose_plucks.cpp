@@ -38,9 +38,11 @@ std::optional<rosin::pluck_diagnosis> by_both(const plucks_to_diagnose& plucks, 
 }  // namespace
 
 rosin::outcome<plucks_told> diagnose_plucks_of(const rosin::rig& rig, const rosin::rig_values& values, provenance& from,
-                                               std::vector<std::string>& warnings, const std::vector<std::string>& without) {
-  const auto plucks = plucks_of(rig, values, from);
+                                               std::vector<std::string>& warnings, const std::vector<std::string>& without,
+                                               int threads) {
+  auto plucks = plucks_of(rig, values, from);
   if (!plucks) return rosin::failure{plucks.error()};
+  plucks->options.threads = threads;
   warnings.insert(warnings.end(), plucks->warnings.begin(), plucks->warnings.end());
   const double impedance = values.impedance_Ns_m ? values.impedance_Ns_m->value : 0,
                length = values.length_m ? values.length_m->value : 0;

@@ -253,7 +253,7 @@ void rank(rig_diagnosis& d) {
 }  // namespace
 
 rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, const std::vector<std::string>& without,
-                                       const std::function<void()>& step) {
+                                       int threads, const std::function<void()>& step) {
   rig_diagnosis d;
   d.title = rig.title.value_or(rig.file);
   const rosin::rig_values values = rosin::values_of(rig);
@@ -262,7 +262,7 @@ rosin::outcome<rig_diagnosis> diagnose(const rosin::rig& rig, provenance& from, 
     if (to_be_fitted(rig, end))
       d.assumed.push_back(std::string{"terminations."} + (end == 0 ? "near" : "far") +
                           " = \"fit\": begins as rigid; what moves there is named");
-  const auto plucks = diagnose_plucks_of(rig, values, from, d.warnings, without);
+  const auto plucks = diagnose_plucks_of(rig, values, from, d.warnings, without, threads);
   step();
   if (!plucks) return rosin::failure{plucks.error()};
   const rosin::pluck_diagnosis& p = plucks->sound();

@@ -133,10 +133,10 @@ struct rig_diagnosis {
 };
 
 inline constexpr std::size_t diagnosis_steps = 4;
-/// `without`: effects that the catalogue is not to know, by name. `step` is called when plucks, strokes, tension have been seen
-/// to.
+/// `without`: effects that the catalogue is not to know, by name. No result depends on the number of threads. `step` is called when
+/// plucks, strokes, tension have been seen to.
 [[nodiscard]] rosin::outcome<rig_diagnosis> diagnose(
-    const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {},
+    const rosin::rig& rig, provenance& from, const std::vector<std::string>& without = {}, int threads = 1,
     const std::function<void()>& step = [] {});
 /// The same for a rig that has not two force channels: plucks heard by pickups or microphones.
 [[nodiscard]] rosin::outcome<rig_diagnosis> diagnose_pickups_of(const rosin::rig& rig, provenance& from,

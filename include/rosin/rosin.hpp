@@ -21,6 +21,7 @@
 
 #include <rosin/math/block_transform.hpp>
 #include <rosin/math/chirp_z.hpp>
+#include <rosin/math/at_once.hpp>
 #include <rosin/math/fft.hpp>
 #include <rosin/math/fft_policy.hpp>
 #include <rosin/math/lane_fft.hpp>
@@ -210,6 +211,7 @@
 #include <rosin/diagnose/pickup_strays.hpp>
 #include <rosin/diagnose/pickup_structure.hpp>
 #include <rosin/diagnose/pickup_table.hpp>
+#include <rosin/diagnose/pluck_order.hpp>
 #include <rosin/diagnose/pluck_candidates.hpp>
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>

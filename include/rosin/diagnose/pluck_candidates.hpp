@@ -10,8 +10,10 @@
 #pragma once
 
 #include <rosin/diagnose/pluck_effects.hpp>
+#include <rosin/diagnose/pluck_order.hpp>
 #include <rosin/diagnose/strong_starts.hpp>
 
+#include <atomic>
 #include <optional>
 
 namespace rosin {
@@ -22,24 +24,6 @@ struct scored_start {
   std::vector<double> values;  ///< physical
   double gain = 0;
 };
-
-/// Cost of a fit where the channels are weighed alike; infinite where it failed.
-inline double cost_of(const scene_fit& f, const std::array<double, 2>& noise) {
-  double cost = 0;
-  for (std::size_t c = 0; c < 2; ++c) cost += f.quality.power[c] / (noise[c] * noise[c]);
-  return std::isfinite(cost) ? cost : 1e300;
-}
-
-/// -2 ln of the evidence but for a constant (Schwarz): what a fit leaves, and what its effects' parameters cost, in the units of
-/// what is left. Corrections cost nothing.
-inline double price_of(const scene_fit& f, const std::array<double, 2>& noise) {
-  double parameters = 0, samples = 1;
-  for (const pluck_effect& e : f.effects)
-    for (const effect_parameter& p : e.parameters) parameters += p.late ? 0 : 1;
-  for (const double n : f.quality.samples) samples += n;
-  const double cost = cost_of(f, noise);
-  return cost + parameters * std::log(samples) * cost / samples;
-}
 
 /// The starting points of one effect at which the score peaks, the highest first.
 inline std::vector<scored_start> best_starts(const pluck_score& test, const scene_plucks& with, const pluck_effect& e,
@@ -85,24 +69,6 @@ inline bool is_itself(const scene_fit& f) {
 inline std::vector<pluck_effect> with_one_more(std::vector<pluck_effect> effects, const pluck_effect& e) {
   effects.push_back(e);
   return effects;
-}
-
-/// An effect whose model holds for a short time only stays if over that time it is the best, and worth anything.
-inline void prefer_over_one_horizon(const scene_data& data, const scene_fit& already, std::vector<scene_fit>& fits,
-                                    std::array<double, 2> noise) {
-  const auto brief = std::find_if(fits.begin(), fits.end(), [](const scene_fit& f) { return f.horizon_periods < 1e8; });
-  if (brief == fits.end()) return;
-  constexpr double worth_anything = 28, apart = 6;
-  const double cost = cost_of(*brief, noise);
-  const auto is_no_better = [&](const scene_fit& than, double by) {
-    const scene_fit other =
-        fit_scene(data, than.effects, than.value, {{1000, brief->horizon_periods, true, data.compared()}}, noise);
-    return cost_of(other, noise) < cost + by;
-  };
-  bool goes = already.horizon_periods >= 1e8 && is_no_better(already, worth_anything);
-  for (auto f = fits.begin(); !goes && f != fits.end(); ++f) goes = f->horizon_periods >= 1e8 && is_no_better(*f, apart);
-  if (goes) fits.erase(brief);
-  else std::rotate(fits.begin(), brief, brief + 1);
 }
 
 /// Where to begin, effect by effect, and which effects are worth a fit.
@@ -153,21 +119,19 @@ inline beginnings find_beginnings(const scene_data& data, const scene_fit& alrea
     if (look.filtered) problem.set_noise(problem.assess(value).noise);
     const pluck_score test(problem, value);
     std::vector<double> gains(catalogue.size(), 0.0);
-    for (std::size_t i = 0; i < catalogue.size(); ++i) {
-      if (catalogue[i].seek) continue;
-      if (catalogue[i].strength < -1) {  // begins from nothing
-        if (out.starts[i].empty()) out.starts[i].push_back({catalogue[i].starts[0], 0});
-        out.foremost[i] = true;
-        continue;
-      }
+    at_once(catalogue.size(), data.options.threads, [&](std::size_t i) {
+      if (catalogue[i].seek || catalogue[i].strength < -1) return;
       const scene_plucks with(data.layout, data.guess.ac_coupled_Hz, with_one_more(already.effects, catalogue[i]));
       for (auto& s : best_starts(test, with, catalogue[i], strong ? 2 : 1)) {
         gains[i] = std::max(gains[i], s.gain);
         out.starts[i].push_back(std::move(s));
       }
-    }
+    });
     note_foremost(gains, strong ? 6 : 12, out.foremost);
   }
+  for (std::size_t i = 0; i < catalogue.size(); ++i)
+    if (!catalogue[i].seek && catalogue[i].strength < -1)  // begins from nothing
+      out.starts[i] = {{catalogue[i].starts[0], 0}}, out.foremost[i] = true;
   seek_beginnings(data, already, catalogue, noise, out);
   return out;
 }
@@ -208,7 +172,8 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
   constexpr std::size_t most = 5, least = 2;
   if (fits.size() > most) fits.erase(fits.begin() + most, fits.end());
   while (strong && fits.size() > least && cost_of(fits.back(), noise) > 30 * cost_of(fits.front(), noise)) fits.pop_back();
-  for (scene_fit& f : fits) {
+  at_once(fits.size(), data.options.threads, [&](std::size_t i) {
+    scene_fit& f = fits[i];
     std::vector<fit_stage> rest;
     rest.reserve(3);
     if (strong) rest.push_back({1000, 40, true}), rest.push_back({});
@@ -218,42 +183,7 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
         });
     if (corrects) rest.push_back({1000, 1e9, true, freedom::all});
     if (!rest.empty()) f = fit_scene(data, f.effects, f.value, rest, noise);
-  }
-}
-
-/// The values of a fit whose last effect sits on the string, with it at its mirror image, which moves the partials by as much.
-inline std::optional<Eigen::VectorXd> mirrored(const scene_fit& fit) {
-  const auto& parameters = fit.effects.back().parameters;
-  if (parameters.empty() || parameters[0].name != "position") return std::nullopt;
-  Eigen::VectorXd v = fit.value;
-  double& x = v[v.size() - static_cast<Eigen::Index>(parameters.size())];
-  x = 1 - x;
-  return v;
-}
-
-/// An effect that leaves more than noise once more from the first periods on, in small steps, and from its mirror image: over all of
-/// the record the fit may have come to rest with partials a little off.
-inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<double, 2> noise) {
-  std::vector<fit_stage> stages;
-  for (double periods = 1.5; periods < std::min(100.0, fit.horizon_periods); periods *= 2)
-    stages.push_back({1000, periods, true});
-  stages.push_back({1000, fit.horizon_periods, true, freedom::all});
-  std::vector<Eigen::VectorXd> from{fit.value};
-  if (auto other = mirrored(fit)) from.push_back(*std::move(other));
-  for (const Eigen::VectorXd& v : from) {
-    scene_fit again = fit_scene(data, fit.effects, v, stages, noise);
-    if (cost_of(again, noise) < cost_of(fit, noise)) fit = std::move(again);
-  }
-  return fit;
-}
-
-/// The best first; that one once more from the first periods on where it leaves more than noise.
-inline void put_in_order(const scene_data& data, const scene_fit& already, std::vector<scene_fit>& fits,
-                         std::array<double, 2> noise) {
-  std::sort(fits.begin(), fits.end(), [&](const auto& a, const auto& b) { return price_of(a, noise) < price_of(b, noise); });
-  if (!fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek)
-    fits.front() = rewound(data, std::move(fits.front()), noise);
-  prefer_over_one_horizon(data, already, fits, noise);
+  });
 }
 
 }  // namespace detail
@@ -270,14 +200,25 @@ inline void put_in_order(const scene_data& data, const scene_fit& already, std::
     return std::any_of(found.begin(), found.end(), [&](const auto& f) { return f.id == e.id(); });
   };
   std::vector<scene_fit> fits, sought;  // the latter over all of the record from the beginning
-  bool complete = false;
-  for (const bool scored : {true, false})
-    for (std::size_t i = 0; i < catalogue.size() && !(complete && !scored); ++i)
-      if ((catalogue[i].strength >= -1) == scored && (begin.foremost[i] || is_found(catalogue[i])))
-        if (auto f = detail::first_fit(data, already, catalogue[i], begin.starts[i], found, strong, noise)) {
-          complete = complete || (strong && f->quality.inflation() == 1.0);
-          (catalogue[i].seek ? sought : fits).push_back(*std::move(f));
+  std::atomic<bool> complete{false};
+  for (const bool scored : {true, false}) {
+    std::vector<std::size_t> tried;
+    for (std::size_t i = 0; i < catalogue.size() && !complete; ++i)
+      if ((catalogue[i].strength >= -1) == scored && (begin.foremost[i] || is_found(catalogue[i]))) tried.push_back(i);
+    std::vector<std::optional<scene_fit>> first(tried.size());
+    std::atomic<std::size_t> enough{tried.size()};  // the first that leaves mere noise, of those that no score tells of
+    at_once(tried.size(), data.options.threads, [&](std::size_t k) {
+      if (k > enough) return;
+      first[k] = detail::first_fit(data, already, catalogue[tried[k]], begin.starts[tried[k]], found, strong, noise);
+      if (!strong || !first[k] || first[k]->quality.inflation() != 1.0) return;
+      complete = true;
+      if (!scored)
+        for (std::size_t least = enough; k < least && !enough.compare_exchange_weak(least, k);) {
         }
+    });
+    for (std::size_t k = 0; k < std::min(tried.size(), enough + 1); ++k)
+      if (first[k]) (catalogue[tried[k]].seek ? sought : fits).push_back(*std::move(first[k]));
+  }
   std::sort(fits.begin(), fits.end(),
             [&](const auto& a, const auto& b) { return detail::price_of(a, noise) < detail::price_of(b, noise); });
   detail::follow_up(data, fits, strong, noise);

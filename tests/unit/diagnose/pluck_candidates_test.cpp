@@ -26,6 +26,12 @@ TEST_CASE("of several effects the one that is there comes first" * doctest::test
   CHECK(fits[0].effects[0].id() == "sensor-resonance@near");
   CHECK(std::exp(fits[0].value[layout.size()]) == test::approx(21e3).epsilon(1e-4));
   CHECK(std::exp(fits[0].value[layout.size() + 1]) == test::approx(14).epsilon(1e-3));
+  data.options.threads = 3;
+  const auto same = rosin::one_more_effect(
+      data, plain, {rosin::skew_effect(facts), rosin::crosstalk_effect(facts), resonance, rosin::slow_release_effect(facts)},
+      false, {1e-3, 1e-3});
+  REQUIRE(same.size() == fits.size());
+  for (std::size_t i = 0; i < fits.size(); ++i) CHECK(same[i].value == fits[i].value);
 }
 
 TEST_CASE(

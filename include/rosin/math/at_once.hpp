@@ -1,0 +1,41 @@
+// tier: hosted
+// SPDX-License-Identifier: MIT
+//
+// Pieces of work that do not depend on one another, on several threads. Each is known by its number and keeps what it makes to
+// itself, so that nothing depends on how many threads there are but the time.
+//
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace rosin {
+
+/// work(0), ..., work(count - 1), each once, in any order, on this thread and up to `threads` - 1 others. Returns when all are
+/// done; what the lowest number that threw has thrown is thrown then.
+template <class Work>
+void at_once(std::size_t count, int threads, const Work& work) {
+  std::vector<std::exception_ptr> thrown(count);
+  std::atomic<std::size_t> next{0};
+  const auto take_part = [&]() noexcept {
+    for (std::size_t i = next++; i < count; i = next++) try {
+        work(i);
+      } catch (...) {
+        thrown[i] = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t i = 1; i < std::min(count, static_cast<std::size_t>(std::max(threads, 1))); ++i)
+      others.emplace_back(take_part);
+    take_part();
+  }
+  for (const auto& what : thrown)
+    if (what) std::rethrow_exception(what);
+}
+
+}  // namespace rosin
