@@ -19,9 +19,9 @@
 #include <rosin/core/pipeline.hpp>
 #include <rosin/core/stage.hpp>
 
+#include <rosin/math/at_once.hpp>
 #include <rosin/math/block_transform.hpp>
 #include <rosin/math/chirp_z.hpp>
-#include <rosin/math/at_once.hpp>
 #include <rosin/math/fft.hpp>
 #include <rosin/math/fft_policy.hpp>
 #include <rosin/math/lane_fft.hpp>
@@ -211,13 +211,13 @@
 #include <rosin/diagnose/pickup_strays.hpp>
 #include <rosin/diagnose/pickup_structure.hpp>
 #include <rosin/diagnose/pickup_table.hpp>
-#include <rosin/diagnose/pluck_order.hpp>
 #include <rosin/diagnose/pluck_candidates.hpp>
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 #include <rosin/diagnose/pluck_effects.hpp>
 #include <rosin/diagnose/pluck_exchange.hpp>
 #include <rosin/diagnose/pluck_judgement.hpp>
+#include <rosin/diagnose/pluck_order.hpp>
 #include <rosin/diagnose/pluck_prediction.hpp>
 #include <rosin/diagnose/pluck_scene.hpp>
 #include <rosin/diagnose/pluck_score.hpp>

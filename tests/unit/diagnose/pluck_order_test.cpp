@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <rosin/diagnose/pluck_effects.hpp>
 #include <rosin/diagnose/pluck_order.hpp>
+
+#include <rosin/diagnose/pluck_effects.hpp>
 
 #include "plucked.hpp"
 #include "support/approx.hpp"
