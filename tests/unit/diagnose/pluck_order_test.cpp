@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
 namespace {
 
 constexpr rosin::string_facts ordered_facts{
@@ -29,7 +31,7 @@ TEST_CASE("a fit costs what it leaves over the noise, and for each parameter the
   CHECK(rosin::detail::cost_of(plain, {1, 2}) == test::approx(500 + 125));
   CHECK(rosin::detail::price_of(plain, {1, 1}) == test::approx(1000));
   CHECK(rosin::detail::price_of(skew, {1, 1}) - 1000 == test::approx(std::log(1001) * 1000 / 1001));
-  CHECK(rosin::detail::cost_of(leaving(NAN, {}), {1, 1}) == 1e300);
+  CHECK(rosin::detail::cost_of(leaving(std::numeric_limits<double>::quiet_NaN(), {}), {1, 1}) == 1e300);
 }
 
 TEST_CASE("what sits on the string has a mirror image, what does not has none") {
