@@ -10,13 +10,14 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace rosin {
 
-/// work(0), ..., work(count - 1), each once, in any order, on this thread and up to `threads` - 1 others. Returns when all are
-/// done; what the lowest number that threw has thrown is thrown then.
+/// work(0), ..., work(count - 1), each once, in any order, on this thread and up to `threads` - 1 others, as many as can be had.
+/// Returns when all are done; what the lowest number that threw has thrown is thrown then.
 template <class Work>
 void at_once(std::size_t count, int threads, const Work& work) {
   std::vector<std::exception_ptr> thrown(count);
@@ -30,8 +31,11 @@ void at_once(std::size_t count, int threads, const Work& work) {
   };
   {
     std::vector<std::jthread> others;
-    for (std::size_t i = 1; i < std::min(count, static_cast<std::size_t>(std::max(threads, 1))); ++i)
-      others.emplace_back(take_part);
+    try {
+      for (std::size_t i = 1; i < std::min(count, static_cast<std::size_t>(std::max(threads, 1))); ++i)
+        others.emplace_back(take_part);
+    } catch (const std::system_error&) {  // there are no more to be had: these will do
+    }
     take_part();
   }
   for (const auto& what : thrown)
