@@ -17,7 +17,6 @@
 //
 #include "figure.hpp"
 
-#include <rosin/calibrate/partial_baseband.hpp>
 #include <rosin/calibrate/partial_search.hpp>
 
 #include <Eigen/Dense>
@@ -55,13 +54,7 @@ bool clear_of(double f, double pitch_Hz, double by_Hz) {
 
 levels partial_levels(const real::channel& heard, double f0, double other_Hz) {
   const rosin::baseband_bank bank{heard.samples, heard.rate_Hz, 20};
-  const auto power_dB = [&](double f) {
-    const auto z = bank.around(f);
-    double sum = 1e-20;
-    const auto a = static_cast<std::size_t>(from_s * z.rate_Hz), b = static_cast<std::size_t>((from_s + lasts_s) * z.rate_Hz);
-    for (std::size_t j = a; j < std::min(b, z.samples.size()); ++j) sum += std::norm(z.samples[j]) / static_cast<double>(b - a);
-    return 10 * std::log10(sum);
-  };
+  const auto power_dB = [&](double f) { return 10 * std::log10(real::mean_power(bank.around(f), from_s, from_s + lasts_s)); };
   levels l;
   for (int n = 1; n <= highest; ++n) {
     const double f = n * f0;

@@ -12,7 +12,6 @@
 //
 #include "figure.hpp"
 
-#include <rosin/calibrate/partial_baseband.hpp>
 #include <rosin/calibrate/pickup_fit.hpp>
 
 namespace {
@@ -30,25 +29,18 @@ struct heard_band {
   loud stroke;
 };
 
-double mean_power(const rosin::baseband_record& z, double from_s, double to_s) {
-  double sum = 1e-20;
-  const auto a = static_cast<std::size_t>(from_s * z.rate_Hz), b = static_cast<std::size_t>(to_s * z.rate_Hz);
-  for (std::size_t j = a; j < b; ++j) sum += std::norm(z.samples[j]) / static_cast<double>(b - a);
-  return sum;
-}
-
 heard_band listen(const real::channel& heard, double nominal_Hz, const std::string& name, const char* colour) {
   const double begin = rosin::detail::sound_begins_s(heard.samples, heard.rate_Hz);
   const auto z =
       rosin::baseband_bank{heard.samples, heard.rate_Hz, (high - low) / 2 * nominal_Hz}.around((low + high) / 2 * nominal_Hz);
   heard_band out{{name, colour, {}, {}, true}, {}};
   for (double t = hop_s; t < look_s; t += hop_s)
-    out.level.x.push_back(t), out.level.y.push_back(10 * std::log10(mean_power(z, begin + t - hop_s, begin + t + hop_s)));
+    out.level.x.push_back(t), out.level.y.push_back(10 * std::log10(real::mean_power(z, begin + t - hop_s, begin + t + hop_s)));
   for (double t = 0.05; t < look_s; t += 0.001) {
     std::vector<double> about;
-    for (double u = t - 0.05; u < t + 0.05; u += 0.001) about.push_back(mean_power(z, begin + u, begin + u + 0.001));
+    for (double u = t - 0.05; u < t + 0.05; u += 0.001) about.push_back(real::mean_power(z, begin + u, begin + u + 0.001));
     std::nth_element(about.begin(), about.begin() + 50, about.end());
-    const double above = 10 * std::log10(mean_power(z, begin + t, begin + t + 0.001) / about[50]);
+    const double above = 10 * std::log10(real::mean_power(z, begin + t, begin + t + 0.001) / about[50]);
     if (above > out.stroke.above_dB) out.stroke = {t, above};
   }
   return out;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// What the programs of this folder share: one channel of a recording, and a plain SVG with one or two panels side by side.
+// What the programs of this folder share: one channel of a recording, how loud a line of it is, and a plain SVG with one or two panels side by side.
 //
 #pragma once
 
 #include <rosin/adapt/audio_sndfile.hpp>
+#include <rosin/calibrate/partial_baseband.hpp>
 #include <rosin/report/output_file.hpp>
 
 #include <algorithm>
@@ -31,6 +32,14 @@ inline channel read_channel(const std::string& path) {
     std::exit(1);
   }
   return {std::move(read->channels.front()), read->sample_rate_Hz};
+}
+
+/// Of a line between two instants of the recording; never quite zero, so that it has a level.
+inline double mean_power(const rosin::baseband_record& z, double from_s, double to_s) {
+  double sum = 1e-20;
+  const auto a = static_cast<std::size_t>(from_s * z.rate_Hz), b = static_cast<std::size_t>(to_s * z.rate_Hz);
+  for (std::size_t j = a; j < std::min(b, z.samples.size()); ++j) sum += std::norm(z.samples[j]) / static_cast<double>(b - a);
+  return sum;
 }
 
 /// Points, joined or not.

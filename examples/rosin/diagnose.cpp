@@ -13,7 +13,6 @@
 
 #include <iostream>
 #include <memory>
-#include <thread>
 
 namespace tool {
 
@@ -22,7 +21,7 @@ namespace {
 struct options {
   std::string rig, json_file, report;
   std::vector<std::string> without;
-  unsigned threads = 0;
+  int threads = 0;
   bool force = false, isolability = false;
   double rate_Hz = 128000, noise_N = 3e-4;
 };
@@ -75,9 +74,8 @@ exit_code tell_isolability(const options& given, provenance from) {
 
 rosin::outcome<rig_diagnosis> diagnosis_of(const rosin::rig& rig, provenance& from, const options& given) {
   if (!rig.has_both_forces()) return diagnose_pickups_of(rig, from, given.without);
-  const unsigned threads = given.threads > 0 ? given.threads : std::max(1U, std::thread::hardware_concurrency());
   progress bar{"diagnosing", diagnosis_steps};
-  return diagnose(rig, from, given.without, static_cast<int>(threads), [&] { bar.step(); });
+  return diagnose(rig, from, given.without, given.threads, [&] { bar.step(); });
 }
 
 exit_code run(const options& given, provenance from) {
@@ -118,7 +116,7 @@ void add_diagnose(CLI::App& app, exit_code& result) {
       ->check(CLI::IsMember(std::vector<std::string>(rosin::effect_names.begin(), rosin::effect_names.end())).description(""))
       ->type_name("EFFECT");
   command->add_option("--threads", given->threads, "0: all cores; the diagnosis is the same, only sooner")
-      ->check(CLI::Range(0U, 1024U).description(""))
+      ->check(CLI::Range(0, 1024).description(""))
       ->capture_default_str();
   auto* isolability =
       command->add_flag("--isolability", given->isolability, "What the plucks of the rig file can tell apart, recorded or not")

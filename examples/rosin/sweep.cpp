@@ -11,6 +11,7 @@
 #include "sweep_plane.hpp"
 
 #include <rosin/friction/yield_curve_design.hpp>
+#include <rosin/math/at_once.hpp>
 #include <rosin/simulate/profiled_rod.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
 
@@ -18,7 +19,6 @@
 #include <iostream>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 namespace tool {
 
@@ -28,7 +28,7 @@ struct sweep_options {
   std::string rig, plane = "schelleng", position, force, acceleration, out, svg, shard = "1/1";
   std::vector<std::string> merge;
   double speed_m_s = 0, rate_Hz = 256000, periods = 100;
-  unsigned threads = 0;
+  int threads = 0;
   bool force_overwrite = false, json = false;
 };
 
@@ -176,7 +176,8 @@ void fill(sweep_plane& plane, const sweep_setup& setup, const sweep_options& giv
   progress bar{"sweeping", todo.size()};
   std::atomic<std::size_t> next{0};
   std::mutex one_at_a_time;
-  const auto work = [&] {
+  const std::size_t threads = rosin::threads_for(given.threads);
+  rosin::at_once(threads, given.threads, [&](std::size_t) {
     stroke_maker make{setup};
     for (std::size_t n = next++; n < todo.size(); n = next++) {
       const double x = plane.x.at(todo[n] % plane.x.count), force_N = plane.y.at(todo[n] / plane.x.count);
@@ -187,12 +188,7 @@ void fill(sweep_plane& plane, const sweep_setup& setup, const sweep_options& giv
       file << plane.line(todo[n], point) << std::flush;
       bar.step();
     }
-  };
-  const unsigned cores = given.threads > 0 ? given.threads : std::max(1U, std::thread::hardware_concurrency());
-  std::vector<std::thread> crew;
-  for (unsigned i = 1; i < cores; ++i) crew.emplace_back(work);
-  work();
-  for (auto& one : crew) one.join();
+  });
 }
 
 void print_summary(const sweep_options& given, const sweep_plane& plane, const std::vector<std::string>& notes) {
@@ -280,7 +276,9 @@ void add_sweep(CLI::App& app, exit_code& result) {
       ->check(CLI::PositiveNumber);
   command->add_option("--periods", given->periods, "Length of each stroke in periods of the string")->capture_default_str();
   command->add_option("--rate", given->rate_Hz, "Steps of the contact per second")->capture_default_str();
-  command->add_option("--threads", given->threads, "0: all cores")->capture_default_str();
+  command->add_option("--threads", given->threads, "0: all cores")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->capture_default_str();
   command->add_option("--shard", given->shard, "K/N: only every N-th point, from the K-th on")->capture_default_str();
   command->add_option("--merge", given->merge, "Files of one plane to be joined into --out; nothing is simulated")
       ->type_name("FILE");

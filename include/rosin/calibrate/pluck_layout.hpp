@@ -61,7 +61,7 @@ struct pluck_options {
   double pass_fraction = 0.34;  ///< edges of the band, of the sampling rate: below where converters begin to cut off
   double stop_fraction = 0.42;
   int most_partials = 160;  ///< a longer, lower string is fitted over fewer hertz
-  int threads = 1;          ///< of a diagnosis, whose fits do not depend on one another
+  int threads = 1;          ///< of a diagnosis, whose fits do not depend on one another; 0: all cores
 
   [[nodiscard]] band limits_for(double rate_Hz, double highest_Hz = 1e300) const noexcept {
     const double stop = std::min(stop_fraction * rate_Hz, highest_Hz);

@@ -16,7 +16,12 @@
 
 namespace rosin {
 
-/// work(0), ..., work(count - 1), each once, in any order, on this thread and up to `threads` - 1 others, as many as can be had.
+/// How many threads are meant: so many, or for 0 as many as there are cores.
+[[nodiscard]] inline std::size_t threads_for(int asked) noexcept {
+  return asked > 0 ? static_cast<std::size_t>(asked) : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
+/// work(0), ..., work(count - 1), each once, in any order, on this thread and up to threads_for(threads) - 1 others, as many as can be had.
 /// Returns when all are done; what the lowest number that threw has thrown is thrown then.
 template <class Work>
 void at_once(std::size_t count, int threads, const Work& work) {
@@ -32,8 +37,7 @@ void at_once(std::size_t count, int threads, const Work& work) {
   {
     std::vector<std::jthread> others;
     try {
-      for (std::size_t i = 1; i < std::min(count, static_cast<std::size_t>(std::max(threads, 1))); ++i)
-        others.emplace_back(take_part);
+      for (std::size_t i = 1; i < std::min(count, threads_for(threads)); ++i) others.emplace_back(take_part);
     } catch (const std::system_error&) {  // there are no more to be had: these will do
     }
     take_part();

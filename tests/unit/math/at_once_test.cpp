@@ -16,6 +16,11 @@ TEST_CASE("each piece of work is done once, however many threads there are") {
   rosin::at_once(0, 4, [](std::size_t) { FAIL("nothing is to be done"); });
 }
 
+TEST_CASE("no number of threads stands for all cores") {
+  CHECK(rosin::threads_for(3) == 3);
+  CHECK(rosin::threads_for(0) == std::max(1U, std::thread::hardware_concurrency()));
+}
+
 TEST_CASE("more than one thread is at work, where more are allowed") {
   std::atomic<int> waiting{0};
   rosin::at_once(2, 2, [&](std::size_t) {
