@@ -7,6 +7,7 @@
 #pragma once
 
 #include <rosin/acquire/pluck_checks.hpp>
+#include <rosin/core/instantiate.hpp>
 
 #include <optional>
 
@@ -24,7 +25,8 @@ namespace detail {
 
 /// The pitch of the ringing against the declared one, and how long it lasts. A pitch that is off is an error where it looks like
 /// a wrong sampling rate or like another string; a bead can lower it by a tenth. True if it may be the declared string's.
-[[nodiscard]] inline bool check_ringing(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
+template <class = void>
+[[nodiscard]] bool check_ringing(take_check& out, const pluck_view& view, const take_signal& s, std::size_t start) {
   const double rate = view.signals->sample_rate_Hz;
   const std::span<const double> tail{s.values.data() + start, s.values.size() - start};
   const auto grade = view.from->has_both_forces() ? severity::error : severity::warning;
@@ -86,7 +88,8 @@ inline void doubt_other_pitch(take_check& out, double pitch_Hz) {
 }
 
 /// With force transducers at both ends.
-inline void check_force_pluck(take_check& out, const pluck_view& view) {
+template <class = void>
+void check_force_pluck(take_check& out, const pluck_view& view) {
   pluck_steps steps;
   if (!check_steps(out, view, steps)) return;
   out.release_s = release_time(view, steps);
@@ -111,7 +114,8 @@ inline void check_force_pluck(take_check& out, const pluck_view& view) {
 }
 
 /// With any other sensor.
-inline void check_other_pluck(take_check& out, const pluck_view& view) {
+template <class = void>
+void check_other_pluck(take_check& out, const pluck_view& view) {
   for (const auto& s : view.signals->signals) {
     if (s.sensor.quantity == quantity::normal_force || s.sensor.quantity == quantity::bow_speed) continue;
     const auto onset = first_onset(s.values, view.signals->sample_rate_Hz, view.fundamental_Hz);
@@ -155,7 +159,8 @@ inline void check_bow(take_check& out, const rig& r, const take& t) {
 }  // namespace detail
 
 /// All checks of one take.
-[[nodiscard]] inline take_check check_take(const rig& r, const take& t, const take_signals& signals) {
+template <class = void>
+[[nodiscard]] take_check check_take(const rig& r, const take& t, const take_signals& signals) {
   take_check out{t.name, signals.file, signals.sample_rate_Hz, signals.time_s(signals.frames()), {}, {}, {}, {}, {}};
   bool sound = true;
   for (const auto& s : signals.signals) sound = detail::check_signal(out, signals, s, t.kind == take_kind::quiet) && sound;
@@ -172,5 +177,6 @@ inline void check_bow(take_check& out, const rig& r, const take& t) {
   else detail::check_other_pluck(out, view);
   return out;
 }
+ROSIN_INSTANTIATE(take_check check_take(const rig&, const take&, const take_signals&))
 
 }  // namespace rosin

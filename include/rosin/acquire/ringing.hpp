@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/math/spectrum_line.hpp>
 
 #include <limits>
@@ -64,8 +65,9 @@ struct partial_comb {
 }  // namespace detail
 
 /// Empty where the stretch is shorter than eight periods of the declared pitch or holds no lines.
-[[nodiscard]] inline std::optional<ringing> find_ringing(std::span<const double> x, double sample_rate_Hz, double declared_Hz,
-                                                         double inharmonicity) {
+template <class = void>
+[[nodiscard]] std::optional<ringing> find_ringing(std::span<const double> x, double sample_rate_Hz, double declared_Hz,
+                                                  double inharmonicity) {
   if (static_cast<double>(x.size()) * declared_Hz < 8 * sample_rate_Hz) return std::nullopt;
   const auto lines =
       strongest_lines(x, sample_rate_Hz, declared_Hz / 3.5, std::min(0.45 * sample_rate_Hz, 9.5 * declared_Hz), 16);
@@ -85,6 +87,7 @@ struct partial_comb {
   best.pitch_Hz = comb.refined(best.pitch_Hz);
   return best;
 }
+ROSIN_INSTANTIATE(std::optional<ringing> find_ringing(std::span<const double>, double, double, double))
 
 /// Q of the ringing's power as a whole at the given pitch, from a straight line through the logarithm of the power of
 /// stretches of a few periods each, down to 1 % of the strongest. Infinity where it does not decay; empty if too short.

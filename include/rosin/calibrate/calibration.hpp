@@ -10,6 +10,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_fit.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/propagate/bow_point.hpp>
 
 #include <Eigen/Core>
@@ -66,11 +67,12 @@ namespace detail {
 }  // namespace detail
 
 /// Waveform parameters by fitted parameters: 6 x size of the layout, for the position nearest to `declared`.
-[[nodiscard]] inline Eigen::MatrixXd waveform_jacobian(const pluck_fit_result& fit, double declared) {
+template <class Real = double>
+[[nodiscard]] Eigen::MatrixXd waveform_jacobian(const pluck_fit_result& fit, double declared) {
   using layout = pluck_layout;
   const Eigen::Index at = fit.layout.position(detail::take_nearest(fit, declared));
   const double f0 = fit.value[layout::fundamental], p = fit.value[at], one_way = 0.5 / f0;
-  Eigen::MatrixXd to = Eigen::MatrixXd::Zero(waveform_parameters, fit.layout.size());
+  Eigen::MatrixX<Real> to = Eigen::MatrixX<Real>::Zero(waveform_parameters, fit.layout.size());
   to(0, at) = one_way;
   to(0, layout::fundamental) = -p * one_way / f0;
   to(1, at) = -one_way;
@@ -83,11 +85,13 @@ namespace detail {
   to(5, layout::gain_far) = -1;
   return to;
 }
+ROSIN_INSTANTIATE(Eigen::MatrixXd waveform_jacobian(const pluck_fit_result&, double))
 
 /// Reads a calibration out of a fit of plucks, for the fitted position whose declared value is nearest to `declared`.
 /// impedance_Ns_m and its relative sd come from the rig: forces alone cannot tell them.
-[[nodiscard]] inline calibration calibration_from(const pluck_fit_result& fit, double declared, double impedance_Ns_m,
-                                                  double impedance_relative_sd, std::array<double, 2> ac_coupled_Hz = {}) {
+template <class Real = double>
+[[nodiscard]] calibration calibration_from(const pluck_fit_result& fit, double declared, double impedance_Ns_m,
+                                           double impedance_relative_sd, std::array<double, 2> ac_coupled_Hz = {}) {
   using layout = pluck_layout;
   const Eigen::Index at = fit.layout.position(detail::take_nearest(fit, declared));
   const double f0 = fit.value[layout::fundamental], p = fit.value[at];
@@ -101,12 +105,13 @@ namespace detail {
   c.ac_coupled_Hz = ac_coupled_Hz;
   c.impedance_relative_sd = impedance_relative_sd;
 
-  const Eigen::MatrixXd to = waveform_jacobian(fit, declared);
+  const Eigen::MatrixX<Real> to = waveform_jacobian(fit, declared);
   c.covariance = to * fit.covariance * to.transpose();
-  Eigen::VectorXd common = Eigen::VectorXd::Zero(fit.layout.size());
+  Eigen::VectorX<Real> common = Eigen::VectorX<Real>::Zero(fit.layout.size());
   common[layout::gain_near] = common[layout::gain_far] = 0.5;
   c.scale_relative_sd = std::sqrt(std::max(0.0, common.dot(fit.covariance * common)));
   return c;
 }
+ROSIN_INSTANTIATE(calibration calibration_from(const pluck_fit_result&, double, double, double, std::array<double, 2>))
 
 }  // namespace rosin

@@ -14,6 +14,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/math/plain_complex.hpp>
 
 #include <Eigen/Core>
@@ -89,9 +90,10 @@ struct line_steps {
 
 /// Gram matrix of the functions Re z_n, Im z_n, t Re z_n, t Im z_n (four per line, in this order), z_n = exp(s_n t),
 /// over t = 0, h, ... (count - 1) h.  Shape: 4N x 4N.
-[[nodiscard]] inline Eigen::MatrixXd line_gram(const std::vector<damped_line>& lines, double step_s, std::size_t count) {
+template <class Real = double>
+[[nodiscard]] Eigen::MatrixXd line_gram(const std::vector<damped_line>& lines, double step_s, std::size_t count) {
   const auto N = static_cast<Eigen::Index>(lines.size());
-  Eigen::MatrixXd gram(4 * N, 4 * N);
+  Eigen::MatrixX<Real> gram(4 * N, 4 * N);
   std::vector<line_steps> steps;
   for (const damped_line& line : lines) steps.emplace_back(line.pole, step_s, count);
   for (Eigen::Index i = 0; i < N; ++i)
@@ -103,12 +105,13 @@ struct line_steps {
           const auto u = same[static_cast<std::size_t>(a + b)], v = cross[static_cast<std::size_t>(a + b)];
           Eigen::Matrix2d part;
           part << v.real() + u.real(), u.imag() - v.imag(), u.imag() + v.imag(), v.real() - u.real();
-          gram.block<2, 2>(4 * i + 2 * a, 4 * j + 2 * b) = part / 2;
-          gram.block<2, 2>(4 * j + 2 * b, 4 * i + 2 * a) = part.transpose() / 2;
+          gram.template block<2, 2>(4 * i + 2 * a, 4 * j + 2 * b) = part / 2;
+          gram.template block<2, 2>(4 * j + 2 * b, 4 * i + 2 * a) = part.transpose() / 2;
         }
     }
   return gram;
 }
+ROSIN_INSTANTIATE(Eigen::MatrixXd line_gram(const std::vector<damped_line>&, double, std::size_t))
 
 /// Lines at equidistant samples. A block of them is a table times one factor a line, so that sums of lines, and products with
 /// lines, are products of matrices, many blocks at a time.
@@ -129,42 +132,45 @@ public:
   }
 
   /// sum_n Re{ residue_nc z_n }: count x 2.
+  template <class Real = double>
   [[nodiscard]] Eigen::MatrixXd sum(const std::vector<damped_line>& lines, std::size_t count) const {
     const Eigen::Index N = jump_.size();
-    Eigen::MatrixXd out(static_cast<Eigen::Index>(count), 2);
-    in_chunks(count, [&](Eigen::Index begin, Eigen::Index blocks, const Eigen::MatrixXcd& start) {
-      Eigen::MatrixXd factor(2 * N, 2 * blocks);
+    Eigen::MatrixX<Real> out(static_cast<Eigen::Index>(count), 2);
+    in_chunks(count, [&](Eigen::Index begin, Eigen::Index blocks, const Eigen::MatrixX<std::complex<Real>>& start) {
+      Eigen::MatrixX<Real> factor(2 * N, 2 * blocks);
       for (Eigen::Index n = 0; n < N; ++n)
         for (Eigen::Index c = 0; c < 2; ++c) {
           const auto r = lines[static_cast<std::size_t>(n)].residue[static_cast<std::size_t>(c)] * start.row(n);
           factor.row(n).segment(c * blocks, blocks) = r.real(), factor.row(N + n).segment(c * blocks, blocks) = -r.imag();
         }
-      const Eigen::MatrixXd both = table_ * factor;
+      const Eigen::MatrixX<Real> both = table_ * factor;
       for (Eigen::Index c = 0; c < 2; ++c) {
         const Eigen::Index length = std::min(blocks * table_.rows(), out.rows() - begin);
-        out.col(c).segment(begin, length) = Eigen::Map<const Eigen::VectorXd>(both.data() + c * blocks * table_.rows(), length);
+        out.col(c).segment(begin, length) =
+            Eigen::Map<const Eigen::VectorX<Real>>(both.data() + c * blocks * table_.rows(), length);
       }
     });
     return out;
   }
 
   /// Products of each column of `signals` with Re z_n, Im z_n, t Re z_n, t Im z_n: N x 4 a column.
+  template <class Real = double>
   [[nodiscard]] std::vector<Eigen::MatrixXd> products(const Eigen::MatrixXd& signals) const {
     const Eigen::Index N = jump_.size(), rows = table_.rows();
-    const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(rows, 0.0, step_s_ * static_cast<double>(rows - 1));
-    std::vector<Eigen::MatrixXd> out(static_cast<std::size_t>(signals.cols()), Eigen::MatrixXd::Zero(N, 4));
-    in_chunks(static_cast<std::size_t>(signals.rows()),
-              [&](Eigen::Index begin, Eigen::Index blocks, const Eigen::MatrixXcd& start) {
-                const Eigen::Index length = std::min(blocks * rows, signals.rows() - begin);
-                Eigen::MatrixXd cut = Eigen::MatrixXd::Zero(rows, 2 * blocks);
-                for (Eigen::Index c = 0; c < signals.cols(); ++c) {
-                  Eigen::Map<Eigen::VectorXd>(cut.data(), blocks * rows).head(length) = signals.col(c).segment(begin, length);
-                  Eigen::Map<Eigen::VectorXd>(cut.data(), blocks * rows).tail(blocks * rows - length).setZero();
-                  cut.rightCols(blocks) = ramp.asDiagonal() * cut.leftCols(blocks);
-                  const Eigen::MatrixXd onto = table_.transpose() * cut;
-                  add_products(onto, start, step_s_ * static_cast<double>(begin), out[static_cast<std::size_t>(c)]);
-                }
-              });
+    const Eigen::VectorX<Real> ramp = Eigen::VectorX<Real>::LinSpaced(rows, 0.0, step_s_ * static_cast<double>(rows - 1));
+    std::vector<Eigen::MatrixX<Real>> out(static_cast<std::size_t>(signals.cols()), Eigen::MatrixX<Real>::Zero(N, 4));
+    in_chunks(static_cast<std::size_t>(signals.rows()), [&](Eigen::Index begin, Eigen::Index blocks,
+                                                            const Eigen::MatrixX<std::complex<Real>>& start) {
+      const Eigen::Index length = std::min(blocks * rows, signals.rows() - begin);
+      Eigen::MatrixX<Real> cut = Eigen::MatrixX<Real>::Zero(rows, 2 * blocks);
+      for (Eigen::Index c = 0; c < signals.cols(); ++c) {
+        Eigen::Map<Eigen::VectorX<Real>>(cut.data(), blocks * rows).head(length) = signals.col(c).segment(begin, length);
+        Eigen::Map<Eigen::VectorX<Real>>(cut.data(), blocks * rows).tail(blocks * rows - length).setZero();
+        cut.rightCols(blocks) = ramp.asDiagonal() * cut.leftCols(blocks);
+        const Eigen::MatrixX<Real> onto = table_.transpose() * cut;
+        add_products(onto, start, step_s_ * static_cast<double>(begin), out[static_cast<std::size_t>(c)]);
+      }
+    });
     return out;
   }
 

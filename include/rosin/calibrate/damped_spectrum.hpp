@@ -11,6 +11,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/math/fft.hpp>
 
 #include <cmath>
@@ -44,8 +45,9 @@ struct damped_line_of_frequencies {
 };
 
 /// X along the line. Precondition: x holds as many samples as the line uses.
-[[nodiscard]] inline std::vector<std::complex<double>> damped_spectrum(const damped_line_of_frequencies& line,
-                                                                       std::span<const double> x) {
+template <class = void>
+[[nodiscard]] std::vector<std::complex<double>> damped_spectrum(const damped_line_of_frequencies& line,
+                                                                std::span<const double> x) {
   std::vector<double> weighted(line.samples);
   const double step = std::exp(-line.sigma_per_s / line.rate_Hz);
   double weight = 1 / line.rate_Hz;
@@ -55,5 +57,6 @@ struct damped_line_of_frequencies {
   fft.forward(weighted.data(), all.data());
   return {all.begin() + static_cast<std::ptrdiff_t>(line.first), all.begin() + static_cast<std::ptrdiff_t>(line.last + 1)};
 }
+ROSIN_INSTANTIATE(std::vector<std::complex<double>> damped_spectrum(const damped_line_of_frequencies&, std::span<const double>))
 
 }  // namespace rosin

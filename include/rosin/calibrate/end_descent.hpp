@@ -23,6 +23,7 @@ public:
     end_equations now;
   };
 
+  template <class = void>
   end_descent(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
               const std::array<known_admittance, 2>& known, const pluck_start& start)
       : takes_{takes}, guess_{guess}, model_{pluck_layout(takes, options), guess.ac_coupled_Hz, known, {}},
@@ -51,8 +52,9 @@ public:
   }
 
   /// Settles with the first `periods` periods in view, and weighs.
+  template <class = void>
   void look(double periods, double highest_Hz, int most) {
-    problem_.emplace(takes_, begin_s_, v_[0] / periods, std::min(highest_Hz, limits_.pass_Hz));
+    problem_ = end_problem(takes_, begin_s_, v_[0] / periods, std::min(highest_Hz, limits_.pass_Hz));
     problem_->set_noise(noise_);
     settle(most);
     weigh();
@@ -60,17 +62,22 @@ public:
   }
 
   [[nodiscard]] state keep() const { return {model_.mode_end, v_, now_}; }
-  void restore(const state& s) { model_.mode_end = s.ends, v_ = s.v, now_ = s.now; }
+  template <class = void>
+  void restore(const state& s) {
+    model_.mode_end = s.ends, v_ = s.v, now_ = s.now;
+  }
 
+  template <class = void>
   void insert(const mode_candidate& c) {
     model_.mode_end.push_back(c.end);
     v_.conservativeResize(model_.size());
     v_.tail<end_model::per_mode>() << std::log(c.mode.frequency_Hz), std::log(c.mode.q),
         std::log(std::clamp(c.mode.per_mass_per_s, 1e-6, 1e5));
   }
+  template <class Real = double>
   void erase(std::size_t mode) {
     const Eigen::Index at = model_.mode_at(mode), rest = v_.size() - at - end_model::per_mode;
-    const Eigen::VectorXd tail = v_.tail(rest);
+    const Eigen::VectorX<Real> tail = v_.tail(rest);
     v_.conservativeResize(v_.size() - end_model::per_mode);
     v_.tail(rest) = tail;
     model_.mode_end.erase(model_.mode_end.begin() + static_cast<std::ptrdiff_t>(mode));
@@ -79,15 +86,16 @@ public:
   void swap_end(std::size_t mode) { model_.mode_end[mode] = 1 - model_.mode_end[mode]; }
 
   /// Levenberg and Marquardt.
+  template <class Real = double>
   void settle(int most) {
     double damping = 1e-4;
     now_ = equations(v_);
     for (int i = 0; i < most; ++i, ++iterations_) {
-      const Eigen::VectorXd scale = now_.hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-      Eigen::MatrixXd scaled = scale.asDiagonal() * now_.hessian * scale.asDiagonal();
+      const Eigen::VectorX<Real> scale = now_.hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+      Eigen::MatrixX<Real> scaled = scale.asDiagonal() * now_.hessian * scale.asDiagonal();
       scaled.diagonal().array() += damping;
-      const Eigen::VectorXd step = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * now_.gradient);
-      const Eigen::VectorXd tried = v_ + step;
+      const Eigen::VectorX<Real> step = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * now_.gradient);
+      const Eigen::VectorX<Real> tried = v_ + step;
       const bool sane = step.allFinite() && plausible(tried);
       end_equations next = sane ? equations(tried) : now_;
       converged_ = sane && std::abs(now_.cost - next.cost) < 0.02 + 1e-6 * now_.cost;
@@ -101,6 +109,7 @@ public:
   }
 
   /// What the residual's power at the partials is times the noise's; 1: nothing is left.
+  template <class = void>
   [[nodiscard]] double misfit() const {
     double above = 0, below = 0;
     for (std::size_t t = 0; t < takes_.size(); ++t)
@@ -145,6 +154,7 @@ private:
   }
 
   /// The noise between the partials: what it is at half of all frequencies.
+  template <class = void>
   void weigh() {
     for (std::size_t c = 0; c < 2; ++c) {
       std::vector<double> power;
@@ -165,6 +175,7 @@ private:
     problem_->set_noise(noise_);
   }
 
+  template <class = void>
   [[nodiscard]] end_equations equations(const Eigen::VectorXd& v) const {
     end_equations eq = problem_->linearise(model_, v);
     for (Eigen::Index p = 0; p < model_.size(); ++p) {
@@ -178,6 +189,7 @@ private:
     return eq;
   }
 
+  template <class = void>
   [[nodiscard]] bool plausible(const Eigen::VectorXd& v) const {
     const auto n = model_.layout.size();
     bool ok = model_.layout.plausible(v.head(n), start_, limits_.pass_Hz);

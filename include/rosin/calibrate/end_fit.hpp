@@ -13,6 +13,7 @@
 #pragma once
 
 #include <rosin/calibrate/end_descent.hpp>
+#include <rosin/core/instantiate.hpp>
 
 namespace rosin {
 
@@ -50,11 +51,13 @@ namespace detail {
 
 class end_fitter {
 public:
+  template <class = void>
   end_fitter(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options, const end_options& how,
              const pluck_start& start)
       : takes_{takes}, how_{how}, d_{takes, guess, options, {known(0, guess), known(1, guess)}, start} {}
 
   /// From a rough start to the whole record.
+  template <class = void>
   [[nodiscard]] outcome<end_fit_result> run() {
     const double f0 = d_.value()[0], most = d_.shortest_s() * f0 / 12;
     for (const auto& [periods, partials] : {std::pair{1.5, 8.0}, {1.5, 24.0}}) d_.look(periods, partials * f0, 30);
@@ -80,6 +83,7 @@ private:
   static constexpr double clear_periods = 12;
 
   /// Tries the best candidates; keeps the one that gains most, if it is worth it.
+  template <class = void>
   [[nodiscard]] bool add_mode() {
     if (!how_.free_ends[0] && !how_.free_ends[1]) return false;
     const auto all = search_modes(d_.problem(), d_.model(), d_.value(), d_.now().hessian, d_.now().gradient, how_.free_ends,
@@ -112,9 +116,10 @@ private:
   }
 
   /// Modes whose mass the data leave open are taken out one by one, where that costs next to nothing.
+  template <class Real = double>
   void remove_idle_modes() {
     for (std::size_t i = d_.model().mode_end.size(); i-- > 0;) {
-      const Eigen::MatrixXd inverse = invert_free(d_.model(), d_.now().hessian);
+      const Eigen::MatrixX<Real> inverse = invert_free(d_.model(), d_.now().hessian);
       if (inverse(d_.model().mode_at(i) + 2, d_.model().mode_at(i) + 2) * d_.misfit() < 0.1) continue;
       const end_descent::state before = d_.keep();
       d_.erase(i);
@@ -124,6 +129,7 @@ private:
   }
 
   /// Whether a mode would do as well at the other end.
+  template <class = void>
   [[nodiscard]] bool end_uncertain(std::size_t mode) {
     if (!how_.free_ends[0] || !how_.free_ends[1]) return false;
     const Eigen::Index at = d_.model().mode_at(mode) + 2;
@@ -137,6 +143,7 @@ private:
     return as_well;
   }
 
+  template <class = void>
   [[nodiscard]] double residual_ratio(std::size_t take) const {
     double left = 0, all = 0;
     for (std::size_t c = 0; c < 2; ++c) {
@@ -149,6 +156,7 @@ private:
   }
 
   /// By the conventions of damping.
+  template <class = void>
   void widen(std::size_t mode, Eigen::MatrixXd& covariance) const {
     const admittance_mode m = d_.model().mode(d_.value(), mode);
     const double turn = 0.5 * d_.model().layout.string(d_.value()).loss.inverse_q(m.frequency_Hz);
@@ -156,13 +164,14 @@ private:
     for (const auto& [k, sd] : {std::pair{0, turn / 2}, {1, turn * m.q}, {2, turn}}) covariance(at + k, at + k) += sd * sd;
   }
 
+  template <class Real = double>
   [[nodiscard]] outcome<end_fit_result> conclude() {
     end_fit_result out;
     const double inflation = d_.misfit();
-    const Eigen::MatrixXd inverse = invert_free(d_.model(), d_.now().hessian);
+    const Eigen::MatrixX<Real> inverse = invert_free(d_.model(), d_.now().hessian);
     end_problem twice(takes_, d_.begins_s(), 2 * d_.problem().line(0).sigma_per_s, d_.limits().pass_Hz);  // the weights' square
     twice.set_noise(d_.noise());
-    Eigen::MatrixXd known = Eigen::MatrixXd::Zero(d_.model().size(), d_.model().size());
+    Eigen::MatrixX<Real> known = Eigen::MatrixX<Real>::Zero(d_.model().size(), d_.model().size());
     for (Eigen::Index p = 0; p < d_.model().size(); ++p)
       if (const auto k = d_.prior(p); k.sd > 0 && d_.model().is_free(p)) known(p, p) = 1 / (k.sd * k.sd);
     out.covariance = inverse * (known + inflation * twice.linearise(d_.model(), d_.value()).hessian) * inverse;
@@ -199,11 +208,14 @@ private:
 }  // namespace detail
 
 /// Fits plucks and ends together. Fails as fit_plucks does.
-[[nodiscard]] inline outcome<end_fit_result> fit_ends(const std::vector<pluck_take>& takes, const pluck_guess& guess,
-                                                      const pluck_options& options = {}, const end_options& how = {}) {
+template <class = void>
+[[nodiscard]] outcome<end_fit_result> fit_ends(const std::vector<pluck_take>& takes, const pluck_guess& guess,
+                                               const pluck_options& options = {}, const end_options& how = {}) {
   const outcome<pluck_start> start = find_start(takes, guess);
   if (!start) return failure{start.error()};
   return detail::end_fitter(takes, guess, options, how, *start).run();
 }
+ROSIN_INSTANTIATE(outcome<end_fit_result> fit_ends(const std::vector<pluck_take>&, const pluck_guess&, const pluck_options&,
+                                                   const end_options&))
 
 }  // namespace rosin

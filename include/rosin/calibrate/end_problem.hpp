@@ -56,6 +56,7 @@ struct end_model {
     const Eigen::Index p = mode_at(i);
     return {std::exp(v[p]), std::exp(v[p + 1]), std::exp(v[p + 2])};
   }
+  template <class = void>
   [[nodiscard]] std::vector<admittance_mode> modes(const Eigen::VectorXd& v) const {
     std::vector<admittance_mode> all;
     for (std::size_t i = 0; i < mode_end.size(); ++i) all.push_back(mode(v, i));
@@ -92,6 +93,7 @@ public:
   };
 
   /// `begin_s`: where each take's record begins to count, a little before its release.
+  template <class = void>
   end_problem(const std::vector<pluck_take>& takes, const std::vector<double>& begin_s, double sigma_per_s, double highest_Hz) {
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const auto first = static_cast<std::size_t>(std::max(0.0, std::floor(begin_s[t] * takes[t].rate_Hz)));
@@ -110,10 +112,12 @@ public:
   void set_noise(std::array<double, 2> noise_N) { noise_ = noise_N; }
   [[nodiscard]] std::array<double, 2> noise() const { return noise_; }
 
+  template <class Real = double>
   [[nodiscard]] rows at(const end_model& m, const Eigen::VectorXd& v, std::size_t take, std::size_t channel,
                         bool for_search = false) const;
+  template <class Real = double>
   [[nodiscard]] end_equations linearise(const end_model& m, const Eigen::VectorXd& v) const {
-    end_equations eq{Eigen::MatrixXd::Zero(m.size(), m.size()), Eigen::VectorXd::Zero(m.size()), 0};
+    end_equations eq{Eigen::MatrixX<Real>::Zero(m.size(), m.size()), Eigen::VectorX<Real>::Zero(m.size()), 0};
     for (std::size_t t = 0; t < takes(); ++t)
       for (std::size_t c = 0; c < 2; ++c) {
         const rows r = at(m, v, t, c);
@@ -121,7 +125,7 @@ public:
         eq.gradient += r.jacobian.transpose() * r.residual;
         eq.cost += r.residual.squaredNorm();
       }
-    eq.hessian = Eigen::MatrixXd(eq.hessian.selfadjointView<Eigen::Lower>());
+    eq.hessian = Eigen::MatrixX<Real>(eq.hessian.selfadjointView<Eigen::Lower>());
     return eq;
   }
   /// What white noise alone would leave of the cost.
@@ -165,15 +169,16 @@ struct loss_slope {
   double inverse_q;           ///< of 1/Q
 };
 
-[[nodiscard]] inline std::vector<loss_slope> loss_slopes(const pluck_layout& layout, const Eigen::VectorXd& v,
-                                                         const loss_law& was, std::complex<double> s, double slow) {
+template <class Real = double>
+[[nodiscard]] std::vector<loss_slope> loss_slopes(const pluck_layout& layout, const Eigen::VectorXd& v, const loss_law& was,
+                                                  std::complex<double> s, double slow) {
   using l = pluck_layout;
   const double f = std::abs(s.imag()) / (2 * std::numbers::pi);
   std::vector<std::pair<Eigen::Index, double>> steps{
       {l::inverse_quality, 1e-6}, {l::internal_loss, 1e-10}, {l::air_loss, 1e-4}, {l::causality, 1e-3}, {l::loss_drag, 1e-3}};
   for (Eigen::Index p = layout.first_of_uneven(); p < layout.first_of_ends(); ++p) steps.emplace_back(p, 1e-3);
   std::vector<loss_slope> out;
-  Eigen::VectorXd more = v;
+  Eigen::VectorX<Real> more = v;
   for (const auto& [of, step] : steps) {
     more[of] += step;
     const loss_law changed = layout.string(more).loss;
@@ -194,8 +199,9 @@ struct end_bin {
   double frequency_Hz, stiffness_s2;
 };
 
-inline end_bin bin_of(const end_model& m, const std::vector<admittance_mode>& modes, const Eigen::VectorXd& v,
-                      std::complex<double> s, std::size_t take) {
+template <class = void>
+end_bin bin_of(const end_model& m, const std::vector<admittance_mode>& modes, const Eigen::VectorXd& v, std::complex<double> s,
+               std::size_t take) {
   using layout = pluck_layout;
   const ringing_string string = m.layout.string(v);
   const double epsilon = string.stiffness_s2(), step = std::max(1e-3 * std::abs(epsilon), 1e-16),
@@ -214,8 +220,9 @@ inline end_bin bin_of(const end_model& m, const std::vector<admittance_mode>& mo
 
 }  // namespace detail
 
-inline end_problem::rows end_problem::at(const end_model& m, const Eigen::VectorXd& v, std::size_t take, std::size_t c,
-                                         bool for_search) const {
+template <class Real>
+end_problem::rows end_problem::at(const end_model& m, const Eigen::VectorXd& v, std::size_t take, std::size_t c,
+                                  bool for_search) const {
   using layout = pluck_layout;
   const auto& line = lines_[take];
   const auto bins = static_cast<Eigen::Index>(line.bins());
@@ -230,7 +237,7 @@ inline end_problem::rows end_problem::at(const end_model& m, const Eigen::Vector
   const double begin = spectra_[take].begin_s, released = v[L.at(take, layout::release)] - begin, h = 1 / line.rate_Hz;
   const double weight = std::sqrt(2.0 / static_cast<double>(line.samples)) * line.rate_Hz / noise_[c];
   const double offset = v[L.at(take, layout::offset_near + static_cast<int>(c))], fades = std::exp(-corner * begin);
-  rows out{Eigen::VectorXd(2 * bins), Eigen::MatrixXd::Zero(2 * bins, m.size()), {}, Eigen::VectorXd(bins)};
+  rows out{Eigen::VectorX<Real>(2 * bins), Eigen::MatrixX<Real>::Zero(2 * bins, m.size()), {}, Eigen::VectorX<Real>(bins)};
   for (Eigen::Index i = 0; i < bins; ++i) {
     const detail::end_bin b = detail::bin_of(m, modes, v, line.at(static_cast<std::size_t>(i)), take);
     const complex s = b.s, A = b.a.force[c], level = corner > 0 ? 0.0 : h / (1.0 - std::exp(-s * h)),

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/calibrate/end_problem.hpp>
+#include <rosin/core/instantiate.hpp>
 
 namespace rosin {
 
@@ -39,10 +40,11 @@ struct score_sums {
   Eigen::MatrixXd with_jacobian;
 };
 
-inline void add_scores(const end_problem::rows& r, const damped_line_of_frequencies& line, std::span<const mode_candidate> batch,
-                       score_sums& sums) {
+template <class Real = double>
+void add_scores(const end_problem::rows& r, const damped_line_of_frequencies& line, std::span<const mode_candidate> batch,
+                score_sums& sums) {
   const auto bins = static_cast<Eigen::Index>(line.bins());
-  Eigen::MatrixXd columns(2 * bins, static_cast<Eigen::Index>(batch.size()));
+  Eigen::MatrixX<Real> columns(2 * bins, static_cast<Eigen::Index>(batch.size()));
   for (std::size_t k = 0; k < batch.size(); ++k)
     for (Eigen::Index i = 0; i < bins; ++i) {
       const std::complex<double> d =
@@ -57,17 +59,16 @@ inline void add_scores(const end_problem::rows& r, const damped_line_of_frequenc
 }  // namespace detail
 
 /// The candidates with their gains, the best first. `hessian`: of data and prior at `v`.
-[[nodiscard]] inline std::vector<mode_candidate> search_modes(const end_problem& problem, const end_model& m,
-                                                              const Eigen::VectorXd& v, const Eigen::MatrixXd& hessian,
-                                                              const Eigen::VectorXd& gradient,
-                                                              const std::array<bool, 2>& free_ends, double from_Hz,
-                                                              double to_Hz) {
+template <class Real = double>
+[[nodiscard]] std::vector<mode_candidate> search_modes(const end_problem& problem, const end_model& m, const Eigen::VectorXd& v,
+                                                       const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
+                                                       const std::array<bool, 2>& free_ends, double from_Hz, double to_Hz) {
   constexpr std::size_t at_once = 64;
   std::vector<mode_candidate> all = detail::mode_grid(free_ends, from_Hz, to_Hz);
   std::vector<detail::score_sums> sums;
   for (std::size_t k = 0; k < all.size(); k += at_once) {
     const auto n = static_cast<Eigen::Index>(std::min(at_once, all.size() - k));
-    sums.push_back({Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(m.size(), n)});
+    sums.push_back({Eigen::VectorX<Real>::Zero(n), Eigen::VectorX<Real>::Zero(n), Eigen::MatrixX<Real>::Zero(m.size(), n)});
   }
   for (std::size_t t = 0; t < problem.takes(); ++t)
     for (std::size_t c = 0; c < 2; ++c) {
@@ -76,12 +77,12 @@ inline void add_scores(const end_problem::rows& r, const damped_line_of_frequenc
         detail::add_scores(r, problem.line(t), std::span(all).subspan(b * at_once, std::min(at_once, all.size() - b * at_once)),
                            sums[b]);
     }
-  const Eigen::MatrixXd inverse = invert_free(m, hessian);
-  const Eigen::VectorXd step = inverse * gradient;
+  const Eigen::MatrixX<Real> inverse = invert_free(m, hessian);
+  const Eigen::VectorX<Real> step = inverse * gradient;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const detail::score_sums& s = sums[k / at_once];
     const auto i = static_cast<Eigen::Index>(k % at_once);
-    const Eigen::VectorXd dJ = s.with_jacobian.col(i);
+    const Eigen::VectorX<Real> dJ = s.with_jacobian.col(i);
     const double free = s.square[i] - dJ.dot(inverse * dJ), excess = s.with_residual[i] - dJ.dot(step);
     if (!(free > 1e-9 * s.square[i]) || !(excess > 0)) continue;
     all[k].gain = 0.5 * excess * excess / free;
@@ -90,5 +91,8 @@ inline void add_scores(const end_problem::rows& r, const damped_line_of_frequenc
   std::sort(all.begin(), all.end(), [](const mode_candidate& a, const mode_candidate& b) { return a.gain > b.gain; });
   return all;
 }
+ROSIN_INSTANTIATE(std::vector<mode_candidate> search_modes(const end_problem&, const end_model&, const Eigen::VectorXd&,
+                                                           const Eigen::MatrixXd&, const Eigen::VectorXd&,
+                                                           const std::array<bool, 2>&, double, double))
 
 }  // namespace rosin

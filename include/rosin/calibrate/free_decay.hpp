@@ -14,6 +14,7 @@
 #include <rosin/calibrate/partials.hpp>
 #include <rosin/calibrate/pickup_loss.hpp>
 #include <rosin/calibrate/pickup_pitch.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/core/outcome.hpp>
 
 #include <algorithm>
@@ -67,8 +68,9 @@ struct free_decay_options {
 namespace detail {
 
 /// Those of one end, from the first on until three in a row are missing.
-inline std::vector<partial> decaying_partials(const baseband_bank& bank, double nominal_Hz, const free_decay_options& o,
-                                              double begin_s, double end_s) {
+template <class = void>
+std::vector<partial> decaying_partials(const baseband_bank& bank, double nominal_Hz, const free_decay_options& o, double begin_s,
+                                       double end_s) {
   std::vector<partial> found;
   std::vector<numbered_frequency> lines;
   double f0 = nominal_Hz, b = o.inharmonicity;
@@ -94,9 +96,9 @@ inline std::vector<partial> decaying_partials(const baseband_bank& bank, double 
 }  // namespace detail
 
 /// The string rings freely from begin_s of the recording to its end. Fails where it does not.
-[[nodiscard]] inline outcome<free_decay> fit_free_decay(const std::array<std::span<const double>, 2>& end_N, double rate_Hz,
-                                                        double nominal_Hz, double begin_s,
-                                                        const free_decay_options& options = {}) {
+template <class = void>
+[[nodiscard]] outcome<free_decay> fit_free_decay(const std::array<std::span<const double>, 2>& end_N, double rate_Hz,
+                                                 double nominal_Hz, double begin_s, const free_decay_options& options = {}) {
   if (!(rate_Hz > 0 && nominal_Hz > 0 && 4 * nominal_Hz < rate_Hz))
     return failure{"free decay: rate and pitch to be expected must be above 0, and four times the pitch below the rate"};
   free_decay out;
@@ -121,5 +123,7 @@ inline std::vector<partial> decaying_partials(const baseband_bank& bank, double 
   out.loss = fit_loss(decays);
   return out;
 }
+ROSIN_INSTANTIATE(outcome<free_decay> fit_free_decay(const std::array<std::span<const double>, 2>&, double, double, double,
+                                                     const free_decay_options&))
 
 }  // namespace rosin

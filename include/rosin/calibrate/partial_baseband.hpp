@@ -52,6 +52,7 @@ struct baseband_record {
 /// All basebands of one recording have one half width and one rate. Precondition: a signal that is not empty.
 class baseband_bank {
 public:
+  template <class = void>
   baseband_bank(std::span<const double> signal, double rate_Hz, double half_width_Hz) : rate_Hz_{rate_Hz} {
     half_width_Hz_ = std::min(half_width_Hz, rate_Hz / 4);
     // so that the end does not wrap to the start
@@ -67,6 +68,7 @@ public:
                                      static_cast<double>(length_));
   }
 
+  template <class = void>
   [[nodiscard]] baseband_record around(double frequency_Hz) const {
     const auto centre = static_cast<std::ptrdiff_t>(std::lround(frequency_Hz / df_Hz_));
     const auto reach = static_cast<std::ptrdiff_t>(half_width_Hz_ / df_Hz_);

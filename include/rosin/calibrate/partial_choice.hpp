@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/calibrate/partial_line.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/math/fft.hpp>
 
 #include <algorithm>
@@ -33,7 +34,8 @@ inline double energy_of(complex_span z) {
 }
 
 /// Angular frequency of the strongest line within +-tolerance of zero.
-inline double strongest_detuning(complex_span z, double rate_Hz, double tolerance_Hz) {
+template <class = void>
+double strongest_detuning(complex_span z, double rate_Hz, double tolerance_Hz) {
   const std::size_t n = fast_size(4 * z.size());
   std::vector<std::complex<double>> padded(n), bins(n);
   std::copy(z.begin(), z.end(), padded.begin());
@@ -57,8 +59,8 @@ inline std::vector<std::complex<double>> left_over(complex_span z, double rate_H
 }
 
 /// The two exponents, s = (-decay, detuning) relative to `around`, of the recurrence z[j] = g1 z[j-m] + g2 z[j-2m].
-inline std::array<std::complex<double>, 2> predicted_exponents(complex_span z, double rate_Hz, double around_rad_s,
-                                                               std::size_t lag) {
+template <class = void>
+std::array<std::complex<double>, 2> predicted_exponents(complex_span z, double rate_Hz, double around_rad_s, std::size_t lag) {
   Eigen::Matrix2cd gram = Eigen::Matrix2cd::Zero();
   Eigen::Vector2cd right = Eigen::Vector2cd::Zero();
   const auto at = [&](std::size_t j) { return z[j] * std::polar(1.0, -around_rad_s * static_cast<double>(j) / rate_Hz); };
@@ -73,7 +75,8 @@ inline std::array<std::complex<double>, 2> predicted_exponents(complex_span z, d
   return {std::log(g[0] / 2.0 + root) * per_s, std::log(g[0] / 2.0 - root) * per_s};
 }
 
-inline std::vector<line_model> starts_for_two(complex_span z, double rate_Hz, const line_fit& one, double tolerance_Hz) {
+template <class = void>
+std::vector<line_model> starts_for_two(complex_span z, double rate_Hz, const line_fit& one, double tolerance_Hz) {
   const damped_part p = one.model.parts[0];
   std::vector<line_model> starts;
   const auto add = [&](damped_part a, damped_part b) { starts.push_back({{a, b}, one.model.centre_Hz, one.model.glide}); };
@@ -104,8 +107,9 @@ inline bool makes_sense(const line_fit& two, const line_fit& one, complex_span z
 }  // namespace detail
 
 /// The best single line within +-tolerance of the centre.
-inline line_fit fit_one_line(std::span<const std::complex<double>> z, double rate_Hz, double centre_Hz, double tolerance_Hz,
-                             pitch_glide glide = {}) {
+template <class = void>
+line_fit fit_one_line(std::span<const std::complex<double>> z, double rate_Hz, double centre_Hz, double tolerance_Hz,
+                      pitch_glide glide = {}) {
   double first_moment = 0;
   for (std::size_t j = 0; j < z.size(); ++j) first_moment += static_cast<double>(j) / rate_Hz * std::norm(z[j]);
   const double guess = detail::energy_of(z) / (2 * std::max(first_moment, 1e-300));
@@ -119,10 +123,12 @@ inline line_fit fit_one_line(std::span<const std::complex<double>> z, double rat
   }
   return fit_line(z, rate_Hz, best);
 }
+ROSIN_INSTANTIATE(line_fit fit_one_line(std::span<const std::complex<double>>, double, double, double, pitch_glide))
 
 /// `one`, or two lines that explain the record so much better. filled: the part of the rate that the band fills with noise.
-inline line_fit one_or_two_lines(std::span<const std::complex<double>> z, double rate_Hz, const line_fit& one,
-                                 double tolerance_Hz, double filled) {
+template <class = void>
+line_fit one_or_two_lines(std::span<const std::complex<double>> z, double rate_Hz, const line_fit& one, double tolerance_Hz,
+                          double filled) {
   auto starts = detail::starts_for_two(z, rate_Hz, one, tolerance_Hz);
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < starts.size(); ++i) order.emplace_back(solve_amplitudes(z, rate_Hz, starts[i]), i);
@@ -139,5 +145,6 @@ inline line_fit one_or_two_lines(std::span<const std::complex<double>> z, double
   }
   return best;
 }
+ROSIN_INSTANTIATE(line_fit one_or_two_lines(std::span<const std::complex<double>>, double, const line_fit&, double, double))
 
 }  // namespace rosin

@@ -11,6 +11,8 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -91,10 +93,11 @@ inline std::complex<double> line_row(const line_model& m, double t, bool glide_f
   return sum;
 }
 
-inline line_normals line_normals_of(complex_span z, double rate_Hz, const line_model& m, bool glide_free) {
+template <class Real = double>
+line_normals line_normals_of(complex_span z, double rate_Hz, const line_model& m, bool glide_free) {
   const auto n = static_cast<Eigen::Index>(4 * m.parts.size() + (glide_free ? 1 : 0));
-  line_normals normals{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-  Eigen::VectorXcd row(n);
+  line_normals normals{Eigen::MatrixX<Real>::Zero(n, n), Eigen::VectorX<Real>::Zero(n)};
+  Eigen::VectorX<std::complex<Real>> row(n);
   for (std::size_t j = 0; j < z.size(); ++j) {
     const std::complex<double> r = z[j] - line_row(m, static_cast<double>(j) / rate_Hz, glide_free, row);
     for (Eigen::Index a = 0; a < n; ++a) {
@@ -122,10 +125,11 @@ inline line_model line_moved(line_model m, const Eigen::VectorXd& by, bool glide
 }  // namespace detail
 
 /// Sets the amplitudes to those of least squares, the rest as it is. Returns the sum of |z - model|^2.
-inline double solve_amplitudes(std::span<const std::complex<double>> z, double rate_Hz, line_model& m) {
+template <class Real = double>
+double solve_amplitudes(std::span<const std::complex<double>> z, double rate_Hz, line_model& m) {
   const auto n = static_cast<Eigen::Index>(m.parts.size());
-  Eigen::MatrixXcd gram = Eigen::MatrixXcd::Zero(n, n);
-  Eigen::VectorXcd right = Eigen::VectorXcd::Zero(n), row(4 * n + 1);
+  Eigen::MatrixX<std::complex<Real>> gram = Eigen::MatrixX<std::complex<Real>>::Zero(n, n);
+  Eigen::VectorX<std::complex<Real>> right = Eigen::VectorX<std::complex<Real>>::Zero(n), row(4 * n + 1);
   double power = 0;
   for (std::size_t j = 0; j < z.size(); ++j) {
     detail::line_row(m, static_cast<double>(j) / rate_Hz, false, row);
@@ -135,19 +139,21 @@ inline double solve_amplitudes(std::span<const std::complex<double>> z, double r
     }
     power += std::norm(z[j]);
   }
-  const Eigen::VectorXcd c = gram.fullPivLu().solve(right);
+  const Eigen::VectorX<std::complex<Real>> c = gram.fullPivLu().solve(right);
   for (Eigen::Index a = 0; a < n; ++a) m.parts[static_cast<std::size_t>(a)].amplitude = c[a];
   return power - std::real(c.dot(right));
 }
+ROSIN_INSTANTIATE(double solve_amplitudes(std::span<const std::complex<double>>, double, line_model&))
 
 /// Levenberg-Marquardt from `start`; the amplitudes of the start do not matter.
-inline line_fit fit_line(std::span<const std::complex<double>> z, double rate_Hz, line_model start, bool glide_free = false,
-                         int iterations = 30) {
+template <class Real = double>
+line_fit fit_line(std::span<const std::complex<double>> z, double rate_Hz, line_model start, bool glide_free = false,
+                  int iterations = 30) {
   solve_amplitudes(z, rate_Hz, start);
   auto normals = detail::line_normals_of(z, rate_Hz, start, glide_free);
   double damping = 1e-3;
   for (int i = 0; i < iterations && damping < 1e8; ++i) {
-    Eigen::MatrixXd damped = normals.matrix;
+    Eigen::MatrixX<Real> damped = normals.matrix;
     damped.diagonal() *= 1 + damping;
     const line_model next = detail::line_moved(start, damped.ldlt().solve(normals.gradient), glide_free);
     const auto there = detail::line_normals_of(z, rate_Hz, next, glide_free);
@@ -163,5 +169,6 @@ inline line_fit fit_line(std::span<const std::complex<double>> z, double rate_Hz
   }
   return {start, normals.matrix, normals.residual, glide_free};
 }
+ROSIN_INSTANTIATE(line_fit fit_line(std::span<const std::complex<double>>, double, line_model, bool, int))
 
 }  // namespace rosin

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/calibrate/pickup_pitch.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/math/fft.hpp>
 
 #include <algorithm>
@@ -41,6 +42,7 @@ public:
     double frequency_Hz, power;
   };
 
+  template <class = void>
   peak_finder(std::span<const double> x, double rate_Hz, double spacing_Hz) : spacing_Hz_{spacing_Hz} {
     const std::size_t n = fast_size(2 * x.size());
     bin_Hz_ = rate_Hz / static_cast<double>(n);
@@ -140,8 +142,9 @@ inline std::array<double, 2> likeliest_pitch(const peak_finder& peaks, double no
 }  // namespace detail
 
 /// range: how far f0 may be from the nominal value, as a part of it. Finds nothing (no partials) in noise.
-[[nodiscard]] inline found_partials find_partials(std::span<const double> x, double rate_Hz, double nominal_Hz, double range,
-                                                  int at_most) {
+template <class = void>
+[[nodiscard]] found_partials find_partials(std::span<const double> x, double rate_Hz, double nominal_Hz, double range,
+                                           int at_most) {
   const detail::peak_finder peaks{x, rate_Hz, nominal_Hz};
   const auto [first, stiff] = detail::likeliest_pitch(peaks, nominal_Hz, range);
   found_partials found{first, stiff, {}, peaks.bin_Hz()};
@@ -166,5 +169,6 @@ inline std::array<double, 2> likeliest_pitch(const peak_finder& peaks, double no
   }
   return found;
 }
+ROSIN_INSTANTIATE(found_partials find_partials(std::span<const double>, double, double, double, int))
 
 }  // namespace rosin

@@ -14,6 +14,7 @@
 
 #include <rosin/calibrate/partial_baseband.hpp>
 #include <rosin/calibrate/partial_choice.hpp>
+#include <rosin/core/instantiate.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -104,9 +105,10 @@ inline line_noise noise_beside(complex_span left, double rate_Hz, const damped_p
 }
 
 /// Covariance of the parameters; the noise as density S = E|n|^2 of a white complex noise.
-inline Eigen::MatrixXd line_covariance(const line_fit& fit, double noise) {
-  Eigen::VectorXd scale = fit.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd unit = scale.asDiagonal() * fit.information * scale.asDiagonal();
+template <class Real = double>
+Eigen::MatrixXd line_covariance(const line_fit& fit, double noise) {
+  Eigen::VectorX<Real> scale = fit.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixX<Real> unit = scale.asDiagonal() * fit.information * scale.asDiagonal();
   return noise / 2 * (scale.asDiagonal() * unit.completeOrthogonalDecomposition().pseudoInverse() * scale.asDiagonal());
 }
 
@@ -127,16 +129,17 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
 }
 
 /// What a track says of its partial.
-[[nodiscard]] inline partial summary_of(const partial_track& t) {
+template <class Real = double>
+[[nodiscard]] partial summary_of(const partial_track& t) {
   const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
   const detail::line_noise noise = noise_of(t);
-  const Eigen::MatrixXd covariance = detail::line_covariance(t.fit, noise.at_line);
+  const Eigen::MatrixX<Real> covariance = detail::line_covariance(t.fit, noise.at_line);
   partial p;
   p.number = t.number;
   p.lasts_s = lasts;
   double energy = 0, detuning = 0, power = 0;
   for (const damped_part& part : t.fit.model.parts) energy += part.energy(lasts);
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(covariance.rows()), slope = mean, loudness = mean;
+  Eigen::VectorX<Real> mean = Eigen::VectorX<Real>::Zero(covariance.rows()), slope = mean, loudness = mean;
   Eigen::Index at = 0;
   for (const damped_part& part : t.fit.model.parts) {
     const double w = part.energy(lasts) / energy;
@@ -171,10 +174,12 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
   p.misfit = std::max(t.fit.residual - 1.5 * expected, 0.0) / std::max(detail::energy_of(t.samples), 1e-300);
   return p;
 }
+ROSIN_INSTANTIATE(partial summary_of(const partial_track&))
 
 /// Fits the line nearest to what was expected, from start_s of the recording on. None where nothing rings within +-tolerance.
-[[nodiscard]] inline std::optional<partial_track> track_partial(const baseband_bank& bank, int number, double expected_Hz,
-                                                                double tolerance_Hz, double start_s, double end_s) {
+template <class = void>
+[[nodiscard]] std::optional<partial_track> track_partial(const baseband_bank& bank, int number, double expected_Hz,
+                                                         double tolerance_Hz, double start_s, double end_s) {
   const baseband_record whole = bank.around(expected_Hz);
   const auto from = std::min(static_cast<std::size_t>(std::ceil(start_s * whole.rate_Hz)), whole.samples.size());
   const auto to = std::clamp(static_cast<std::size_t>(end_s * whole.rate_Hz), from, whole.samples.size());
@@ -192,5 +197,6 @@ inline const damped_part& strongest(const line_model& m, double lasts) {
                                detail::filled_with_noise(whole.window, whole.rate_Hz));
   return track;
 }
+ROSIN_INSTANTIATE(std::optional<partial_track> track_partial(const baseband_bank&, int, double, double, double, double))
 
 }  // namespace rosin

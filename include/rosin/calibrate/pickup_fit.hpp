@@ -17,6 +17,7 @@
 #include <rosin/calibrate/pickup_glide.hpp>
 #include <rosin/calibrate/pickup_loss.hpp>
 #include <rosin/calibrate/pickup_pitch.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/core/outcome.hpp>
 
 #include <Eigen/Dense>
@@ -88,8 +89,9 @@ inline bool believable(const partial& p, double expected_Hz, double f0) {
 }
 
 /// The tracks of what was found that can be believed.
-inline std::vector<partial_track> pickup_tracks(const baseband_bank& bank, const found_partials& found, double start_s,
-                                                double stop_s, double highest_Hz, double tolerance_Hz) {
+template <class = void>
+std::vector<partial_track> pickup_tracks(const baseband_bank& bank, const found_partials& found, double start_s, double stop_s,
+                                         double highest_Hz, double tolerance_Hz) {
   std::vector<partial_track> tracks;
   for (const auto& line : found.partials) {
     if (line.frequency_Hz > highest_Hz) continue;
@@ -109,10 +111,11 @@ inline double common_spread(const std::vector<partial>& partials, double partial
 }
 
 /// What that does to f0 and b: which of the two pitches is heard more may be the same for all partials, and may drift along them.
-inline Eigen::Matrix2d two_pitches(const std::vector<partial>& partials, const robust_fit& pitch) {
+template <class Real = double>
+Eigen::Matrix2d two_pitches(const std::vector<partial>& partials, const robust_fit& pitch) {
   const double spread = common_spread(partials, &partial::spread_Hz, &partial::frequency_Hz);
   const double first = partials.front().number, last = partials.back().number;
-  Eigen::VectorXd drift(static_cast<Eigen::Index>(partials.size()));
+  Eigen::VectorX<Real> drift(static_cast<Eigen::Index>(partials.size()));
   for (std::size_t i = 0; i < partials.size(); ++i)
     drift[static_cast<Eigen::Index>(i)] =
         spread * partials[i].frequency_Hz * ((partials[i].number - first) / (last - first) - 0.5);
@@ -122,7 +125,8 @@ inline Eigen::Matrix2d two_pitches(const std::vector<partial>& partials, const r
   return covariance;
 }
 
-inline void fit_laws(pickup_fit& fit, const found_partials& found, const glide_estimate& glide) {
+template <class Real = double>
+void fit_laws(pickup_fit& fit, const found_partials& found, const glide_estimate& glide) {
   std::vector<numbered_frequency> lines;
   std::vector<measured_decay> decays;
   for (const partial& p : fit.partials) {
@@ -130,8 +134,8 @@ inline void fit_laws(pickup_fit& fit, const found_partials& found, const glide_e
     decays.push_back({p.frequency_Hz, p.decay_per_s, p.decay_sd});
   }
   const robust_fit pitch = fit_pitch(lines, found.fundamental_Hz, found.inharmonicity);
-  const Eigen::VectorXd share =
-      Eigen::Map<const Eigen::VectorXd>(glide.share_Hz.data(), static_cast<Eigen::Index>(glide.share_Hz.size()));
+  const Eigen::VectorX<Real> share =
+      Eigen::Map<const Eigen::VectorX<Real>>(glide.share_Hz.data(), static_cast<Eigen::Index>(glide.share_Hz.size()));
   const Eigen::Vector2d common = glide.sd * (pitch.gain * share);
   fit.fundamental_Hz = pitch.value[0];
   fit.inharmonicity = pitch.value[1];
@@ -174,8 +178,9 @@ inline void add_warnings(pickup_fit& fit, double nominal_Hz) {
   say(std::abs(fit.glide.relative) > 1e-3, "pitch glide: sharp by " + percent(fit.glide.relative) + " at the start; taken out");
 }
 
-inline outcome<pickup_fit> fit_stretch(std::span<const double> signal, double rate_Hz, double nominal_Hz,
-                                       const pickup_options& options, const baseband_bank& bank, double start_s, double stop_s) {
+template <class = void>
+outcome<pickup_fit> fit_stretch(std::span<const double> signal, double rate_Hz, double nominal_Hz, const pickup_options& options,
+                                const baseband_bank& bank, double start_s, double stop_s) {
   const double seen_s = std::min(stop_s - start_s, std::max(1.0, 50 / nominal_Hz));
   const auto first = signal.subspan(static_cast<std::size_t>(start_s * rate_Hz), static_cast<std::size_t>(seen_s * rate_Hz));
   const auto found = find_partials(first, rate_Hz, nominal_Hz, options.search_range, options.partials_at_most);
@@ -214,8 +219,9 @@ inline outcome<pickup_fit> fit_stretch(std::span<const double> signal, double ra
 /// Fits a recording of one free ringing. nominal_Hz: the pitch to be expected, within options.search_range. A glide is modelled,
 /// not waited for: once it is over, the high partials are gone, and what stands in their places is the pickup's distortion of the
 /// low ones.
-[[nodiscard]] inline outcome<pickup_fit> fit_pickup(std::span<const double> signal, double rate_Hz, double nominal_Hz,
-                                                    const pickup_options& options = {}) {
+template <class = void>
+[[nodiscard]] outcome<pickup_fit> fit_pickup(std::span<const double> signal, double rate_Hz, double nominal_Hz,
+                                             const pickup_options& options = {}) {
   if (const auto problem = detail::pickup_input_problem(signal, rate_Hz, nominal_Hz, options); !problem.empty())
     return failure{problem};
   const double end = std::min(options.end_s, static_cast<double>(signal.size()) / rate_Hz),
@@ -231,5 +237,6 @@ inline outcome<pickup_fit> fit_stretch(std::span<const double> signal, double ra
   if (fit) detail::add_warnings(*fit, nominal_Hz);
   return fit;
 }
+ROSIN_INSTANTIATE(outcome<pickup_fit> fit_pickup(std::span<const double>, double, double, const pickup_options&))
 
 }  // namespace rosin

@@ -11,6 +11,7 @@
 
 #include <rosin/calibrate/partials.hpp>
 #include <rosin/calibrate/pickup_regression.hpp>
+#include <rosin/core/instantiate.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +57,8 @@ inline double glide_decay(const std::vector<partial_track>& tracks) {
 namespace detail {
 
 /// A track as one line with the glide free, gone at the rate kappa. Many turns of phase may lie in a glide: two starts are tried.
-inline line_fit gliding(const partial_track& t, double kappa, double expected) {
+template <class = void>
+line_fit gliding(const partial_track& t, double kappa, double expected) {
   const double lasts = static_cast<double>(t.samples.size()) / t.rate_Hz;
   damped_part part = as_one(t);
   line_fit best = fit_line(t.samples, t.rate_Hz, {{part}, t.fit.model.centre_Hz, {0, kappa}}, true);
@@ -73,23 +75,24 @@ struct glides {
   double value, sd;  ///< of all together
 };
 
-inline glides combined_glide(const std::vector<partial_track>& tracks, double kappa) {
+template <class Real = double>
+glides combined_glide(const std::vector<partial_track>& tracks, double kappa) {
   const auto n = static_cast<Eigen::Index>(tracks.size());
-  glides g{{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd::Ones(n)}, {}, 0, 0};
+  glides g{{Eigen::VectorX<Real>(n), Eigen::VectorX<Real>(n), Eigen::VectorX<Real>::Ones(n)}, {}, 0, 0};
   for (Eigen::Index i = 0; i < n; ++i) {
     partial_track t = tracks[static_cast<std::size_t>(i)];
     const Eigen::Index known = std::min<Eigen::Index>(i, 5);  // lower partials lead: their phase turns less
     t.fit = gliding(t, kappa, known < 2 ? 0.0 : median_of(g.each.y.segment(i - known, known)));
-    const Eigen::MatrixXd covariance = line_covariance(t.fit, noise_of(t).at_line);
+    const Eigen::MatrixX<Real> covariance = line_covariance(t.fit, noise_of(t).at_line);
     g.each.y[i] = t.fit.model.glide.relative;
     g.each.variance[i] = std::max(covariance(4, 4), 1e-20);
     g.share_Hz.push_back(-covariance(3, 4) / std::max(covariance(4, 4), 1e-300) / full_turn);
   }
-  const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) {
+  const auto constant = [](const Eigen::VectorX<Real>& theta, Eigen::VectorX<Real>& y, Eigen::MatrixX<Real>& J) {
     y.setConstant(theta[0]);
     J.setOnes();
   };
-  const robust_fit fit = robust_regression(g.each, constant, Eigen::VectorXd::Constant(1, median_of(g.each.y)));
+  const robust_fit fit = robust_regression(g.each, constant, Eigen::VectorX<Real>::Constant(1, median_of(g.each.y)));
   g.value = fit.value[0];
   g.sd = std::sqrt(fit.covariance(0, 0));
   return g;
@@ -97,7 +100,8 @@ inline glides combined_glide(const std::vector<partial_track>& tracks, double ka
 
 /// The rate at which the glide dies away, between a fifth and five times a first guess: the one that leaves least over in the
 /// clearest partials.
-inline double likeliest_glide_decay(const std::vector<partial_track>& tracks, double guess, double expected) {
+template <class = void>
+double likeliest_glide_decay(const std::vector<partial_track>& tracks, double guess, double expected) {
   std::vector<std::pair<double, const partial_track*>> clearest;
   for (const partial_track& t : tracks) clearest.emplace_back(-energy_of(t.samples) / noise_of(t).at_line, &t);
   std::sort(clearest.begin(), clearest.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -123,7 +127,8 @@ inline double likeliest_glide_decay(const std::vector<partial_track>& tracks, do
 }  // namespace detail
 
 /// Precondition: at least one track.
-[[nodiscard]] inline glide_estimate estimate_glide(const std::vector<partial_track>& tracks) {
+template <class = void>
+[[nodiscard]] glide_estimate estimate_glide(const std::vector<partial_track>& tracks) {
   double kappa = detail::glide_decay(tracks);
   detail::glides all = detail::combined_glide(tracks, kappa);
   const auto sure = [&] { return tracks.size() >= 4 && all.value > 2.5 * all.sd && all.value < 0.02; };
@@ -133,14 +138,17 @@ inline double likeliest_glide_decay(const std::vector<partial_track>& tracks, do
   found.sd = sure() ? std::hypot(all.sd, 0.05 * all.value) : std::min(std::hypot(all.sd, all.value), 0.01);
   return found;
 }
+ROSIN_INSTANTIATE(glide_estimate estimate_glide(const std::vector<partial_track>&))
 
 /// The same tracks with the glide taken out: one line or two is decided anew.
-inline void take_out_glide(std::vector<partial_track>& tracks, const pitch_glide& glide, double tolerance_Hz) {
+template <class = void>
+void take_out_glide(std::vector<partial_track>& tracks, const pitch_glide& glide, double tolerance_Hz) {
   for (partial_track& t : tracks) {
     const line_fit one = fit_line(
         t.samples, t.rate_Hz, {detail::gliding(t, glide.decay_per_s, glide.relative).model.parts, t.fit.model.centre_Hz, glide});
     t.fit = one_or_two_lines(t.samples, t.rate_Hz, one, tolerance_Hz, detail::filled_with_noise(t.window, t.rate_Hz));
   }
 }
+ROSIN_INSTANTIATE(void take_out_glide(std::vector<partial_track>&, const pitch_glide&, double))
 
 }  // namespace rosin

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <rosin/calibrate/pickup_regression.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/propagate/string_parameters.hpp>
 
 #include <boost/math/special_functions/erf.hpp>
@@ -43,6 +44,7 @@ struct loss_estimate {
   int used = 0;
 
   /// Standard deviation of the law itself at a frequency; a single partial scatters besides.
+  template <class = void>
   [[nodiscard]] double inverse_q_sd(double frequency_Hz) const {
     const Eigen::Vector3d slope{1, frequency_Hz, 1 / std::sqrt(frequency_Hz)};
     return std::sqrt(std::max(slope.dot(covariance * slope), 0.0));
@@ -52,19 +54,19 @@ struct loss_estimate {
 namespace detail {
 
 /// E[(x - about)(x - about)'] of a normal distribution (mean, covariance) cut off to x >= 0.
-inline Eigen::MatrixXd moments_above_zero(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
-                                          const Eigen::VectorXd& about) {
+template <class Real = double>
+Eigen::MatrixXd moments_above_zero(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& about) {
   const Eigen::Index n = mean.size();
-  const Eigen::VectorXd unit = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
-  Eigen::MatrixXd correlation = unit.cwiseInverse().asDiagonal() * covariance * unit.cwiseInverse().asDiagonal();
+  const Eigen::VectorX<Real> unit = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  Eigen::MatrixX<Real> correlation = unit.cwiseInverse().asDiagonal() * covariance * unit.cwiseInverse().asDiagonal();
   correlation.diagonal().array() += 1e-10;
-  const Eigen::MatrixXd L = correlation.llt().matrixL();
-  const Eigen::VectorXd centre = mean.cwiseQuotient(unit), from = about.cwiseQuotient(unit);
+  const Eigen::MatrixX<Real> L = correlation.llt().matrixL();
+  const Eigen::VectorX<Real> centre = mean.cwiseQuotient(unit), from = about.cwiseQuotient(unit);
   constexpr double lattice[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};  // powers of 1 / 1.2207...
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixX<Real> sum = Eigen::MatrixX<Real>::Zero(n, n);
   double weights = 0;
   for (int k = 1; k <= 2000; ++k) {
-    Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
+    Eigen::VectorX<Real> u = Eigen::VectorX<Real>::Zero(n);
     double weight = 1;
     for (Eigen::Index i = 0; i < n; ++i) {
       const double low = -(centre[i] + L.row(i).head(i).dot(u.head(i))) / L(i, i);
@@ -73,7 +75,7 @@ inline Eigen::MatrixXd moments_above_zero(const Eigen::VectorXd& mean, const Eig
       u[i] = std::sqrt(2.0) * boost::math::erfc_inv(2 * above * std::max(share, 1e-9));
       weight *= above;
     }
-    const Eigen::VectorXd x = centre + L * u - from;
+    const Eigen::VectorX<Real> x = centre + L * u - from;
     sum += weight * x * x.transpose();
     weights += weight;
   }
@@ -89,6 +91,7 @@ struct loss_model {
     return std::numbers::pi * f * (which == 0 ? 1 : which == 1 ? f : 1 / std::sqrt(f));
   }
 
+  template <class = void>
   void operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) const {
     for (Eigen::Index i = 0; i < y.size(); ++i)
       for (std::size_t k = 0; k < terms.size(); ++k)
@@ -98,10 +101,11 @@ struct loss_model {
 };
 
 /// Least squares with the terms given, the scatter in proportion to the law that results.
-inline robust_fit fit_loss_terms(const std::vector<measured_decay>& decays, const std::vector<int>& terms) {
+template <class Real = double>
+robust_fit fit_loss_terms(const std::vector<measured_decay>& decays, const std::vector<int>& terms) {
   const auto n = static_cast<Eigen::Index>(decays.size());
-  robust_data d{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
-  Eigen::VectorXd inverse_q(n);
+  robust_data d{Eigen::VectorX<Real>(n), Eigen::VectorX<Real>(n), Eigen::VectorX<Real>(n)};
+  Eigen::VectorX<Real> inverse_q(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& m = decays[static_cast<std::size_t>(i)];
     d.y[i] = m.decay_per_s;
@@ -111,9 +115,9 @@ inline robust_fit fit_loss_terms(const std::vector<measured_decay>& decays, cons
   const double usual = std::max(median_of(inverse_q), 1e-12);
   for (Eigen::Index i = 0; i < n; ++i) d.shape[i] = usual * decays[static_cast<std::size_t>(i)].frequency_Hz;
   const loss_model model{decays, terms};
-  Eigen::VectorXd theta = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(terms.size())), y(n);
-  Eigen::MatrixXd J(n, theta.size());
-  const Eigen::VectorXd least = 0.2 * d.shape;
+  Eigen::VectorX<Real> theta = Eigen::VectorX<Real>::Zero(static_cast<Eigen::Index>(terms.size())), y(n);
+  Eigen::MatrixX<Real> J(n, theta.size());
+  const Eigen::VectorX<Real> least = 0.2 * d.shape;
   theta[0] = usual / loss_model::term(terms[0], 1) * (terms[0] == 0 ? 1 : 0);
   robust_fit fit;
   for (int i = 0; i < 6; ++i) {
@@ -128,7 +132,8 @@ inline robust_fit fit_loss_terms(const std::vector<measured_decay>& decays, cons
 }  // namespace detail
 
 /// Constant alone below five partials. Precondition: at least one partial.
-[[nodiscard]] inline loss_estimate fit_loss(const std::vector<measured_decay>& decays) {
+template <class = void>
+[[nodiscard]] loss_estimate fit_loss(const std::vector<measured_decay>& decays) {
   std::vector<int> terms = decays.size() < 5 ? std::vector<int>{0} : std::vector<int>{0, 1, 2};
   const std::vector<int> all = terms;
   const robust_fit free = detail::fit_loss_terms(decays, all);
@@ -147,5 +152,6 @@ inline robust_fit fit_loss_terms(const std::vector<measured_decay>& decays, cons
   loss.used = fit.used;
   return loss;
 }
+ROSIN_INSTANTIATE(loss_estimate fit_loss(const std::vector<measured_decay>&))
 
 }  // namespace rosin

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <rosin/calibrate/pickup_regression.hpp>
+#include <rosin/core/instantiate.hpp>
 
 #include <Eigen/Core>
 
@@ -33,9 +34,10 @@ struct numbered_frequency {
 
 namespace detail {
 
-inline robust_data pitch_data(const std::vector<numbered_frequency>& partials, bool in_proportion) {
+template <class Real = double>
+robust_data pitch_data(const std::vector<numbered_frequency>& partials, bool in_proportion) {
   const auto n = static_cast<Eigen::Index>(partials.size());
-  robust_data d{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd::Ones(n)};
+  robust_data d{Eigen::VectorX<Real>(n), Eigen::VectorX<Real>(n), Eigen::VectorX<Real>::Ones(n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& p = partials[static_cast<std::size_t>(i)];
     d.y[i] = p.frequency_Hz;
@@ -48,9 +50,9 @@ inline robust_data pitch_data(const std::vector<numbered_frequency>& partials, b
 }  // namespace detail
 
 /// value: f0 (Hz), b. Precondition: at least two partials, f0 > 0 within a per cent or so.
-[[nodiscard]] inline robust_fit fit_pitch(const std::vector<numbered_frequency>& partials, double fundamental_Hz,
-                                          double inharmonicity) {
-  const auto model = [&](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) {
+template <class Real = double>
+[[nodiscard]] robust_fit fit_pitch(const std::vector<numbered_frequency>& partials, double fundamental_Hz, double inharmonicity) {
+  const auto model = [&](const Eigen::VectorX<Real>& theta, Eigen::VectorX<Real>& y, Eigen::MatrixX<Real>& J) {
     for (Eigen::Index i = 0; i < y.size(); ++i) {
       const double n = partials[static_cast<std::size_t>(i)].number;
       y[i] = partial_frequency(theta[0], theta[1], n);
@@ -64,9 +66,11 @@ inline robust_data pitch_data(const std::vector<numbered_frequency>& partials, b
   scaled.in_proportion = true;
   return scaled.cost < alike.cost ? scaled : alike;
 }
+ROSIN_INSTANTIATE(robust_fit fit_pitch(const std::vector<numbered_frequency>&, double, double))
 
 /// Standard deviation of the frequency that such a fit foretells for a partial, scatter not included.
-[[nodiscard]] inline double predicted_sd(const robust_fit& fit, int number) {
+template <class = void>
+[[nodiscard]] double predicted_sd(const robust_fit& fit, int number) {
   const double f0 = fit.value[0], f = partial_frequency(f0, fit.value[1], number), n2 = double(number) * number;
   const Eigen::Vector2d slope{f / f0, n2 * n2 * f0 * f0 / (2 * f)};
   return std::sqrt(std::max(slope.dot(fit.covariance * slope), 0.0));

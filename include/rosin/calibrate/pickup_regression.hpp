@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/math/median.hpp>
 
 #include <Eigen/Dense>
@@ -44,7 +45,8 @@ struct robust_data {
 
 namespace detail {
 
-inline Eigen::VectorXd spread_of(const robust_data& d, double scatter) {
+template <class = void>
+Eigen::VectorXd spread_of(const robust_data& d, double scatter) {
   return (d.variance.array() + (scatter * d.shape.array()).square()).sqrt();
 }
 
@@ -62,8 +64,8 @@ struct huber_limits {
 };
 
 /// The scatter at which the bounded squares of residual / sigma add up to what a normal distribution would give.
-inline double scatter_of(const robust_data& d, const Eigen::VectorXd& residual, Eigen::Index parameters,
-                         const huber_limits& limits) {
+template <class = void>
+double scatter_of(const robust_data& d, const Eigen::VectorXd& residual, Eigen::Index parameters, const huber_limits& limits) {
   const double wanted = limits.usual_square() * std::max(static_cast<double>(d.y.size() - parameters), 0.5);
   const auto excess = [&](double s) {
     return residual.cwiseQuotient(spread_of(d, s)).cwiseAbs2().cwiseMin(limits.bend * limits.bend).sum() - wanted;
@@ -75,7 +77,8 @@ inline double scatter_of(const robust_data& d, const Eigen::VectorXd& residual, 
 }
 
 /// Variance of the M-estimate against that of least squares without outliers.
-inline double sandwich(const Eigen::VectorXd& u, Eigen::Index parameters, const huber_limits& limits) {
+template <class = void>
+double sandwich(const Eigen::VectorXd& u, Eigen::Index parameters, const huber_limits& limits) {
   double psi2 = 0, slope = 0, n = 0, product = 0, before = 0;
   for (const double v : u) {
     if (limits.weight(v) == 0) continue;
@@ -93,6 +96,7 @@ inline double sandwich(const Eigen::VectorXd& u, Eigen::Index parameters, const 
   const double together = correlation > 1 / std::sqrt(n) ? (1 + correlation) / (1 - correlation) : 1.0;
   return plain * together * (freedom > 2.5 ? freedom / (freedom - 2) : 5.0);
 }
+ROSIN_INSTANTIATE(double sandwich(const Eigen::VectorXd&, Eigen::Index, const huber_limits&))
 
 }  // namespace detail
 

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_problem.hpp>
+#include <rosin/core/instantiate.hpp>
 
 #include <Eigen/Dense>
 
@@ -39,7 +40,10 @@ struct pluck_fit_result {
   int iterations = 0;
   bool converged = false;
 
-  [[nodiscard]] ringing_string string() const { return layout.string(value); }
+  template <class = void>
+  [[nodiscard]] ringing_string string() const {
+    return layout.string(value);
+  }
 };
 
 namespace detail {
@@ -85,10 +89,11 @@ bool descend(const Problem& problem, const Layout& layout, const Eigen::VectorXd
 }
 
 /// Names of the parameters that the data leave open: those in the directions in which the scaled Hessian vanishes.
-inline std::vector<std::string> unidentified(const Eigen::MatrixXd& data_hessian, const pluck_layout& layout) {
-  const Eigen::VectorXd diagonal = data_hessian.diagonal();
-  const Eigen::VectorXd scale = diagonal.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * data_hessian * scale.asDiagonal());
+template <class Real = double>
+std::vector<std::string> unidentified(const Eigen::MatrixXd& data_hessian, const pluck_layout& layout) {
+  const Eigen::VectorX<Real> diagonal = data_hessian.diagonal();
+  const Eigen::VectorX<Real> scale = diagonal.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixX<Real>> modes(scale.asDiagonal() * data_hessian * scale.asDiagonal());
   std::vector<std::string> names;
   for (Eigen::Index p = 0; p < diagonal.size(); ++p) {
     if (!layout.is_free(p) || layout.is_scale(p)) continue;  // one common scale is always left to the nominal values
@@ -106,8 +111,9 @@ double worst(const Assessed& result) {
 }
 
 /// The last descents, over all partials, with the weights that the residual itself shows; then covariance and verdict.
-inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
-                   const Eigen::VectorXd& begin, double periods, pluck_fit_result& result) {
+template <class Real = double>
+void finish(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
+            const Eigen::VectorXd& begin, double periods, pluck_fit_result& result) {
   std::array<double, 2> noise{1e-2, 1e-2};
   for (const double within : {400.0, 1e9})  // the second descent starts sure of the pitch
     if (periods > 400 || within > 400) {
@@ -127,22 +133,25 @@ inline void finish(const std::vector<pluck_take>& takes, const pluck_guess& gues
   result.misfit = found.misfit, result.more_than_noise = found.inflation() != 1;
   result.residual_ratio = found.residual_ratio;
   const normal_equations end = problem.linearise(result.value);
-  const Eigen::MatrixXd inverse = invert_free(result.layout, end.hessian);
+  const Eigen::MatrixX<Real> inverse = invert_free(result.layout, end.hessian);
   result.covariance = inverse * (end.prior + found.inflation() * problem.scatter(result.value)) * inverse;
   result.sd = result.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   result.unidentified = unidentified(end.hessian - end.prior, result.layout);
 }
+ROSIN_INSTANTIATE(void finish(const std::vector<pluck_take>&, const pluck_guess&, const pluck_options&, const Eigen::VectorXd&,
+                              double, pluck_fit_result&))
 
 /// All stages from a starting point on.
-inline void approach_and_finish(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
-                                pluck_fit_result& result) {
-  const Eigen::VectorXd begin = result.value;
+template <class Real = double>
+void approach_and_finish(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
+                         pluck_fit_result& result) {
+  const Eigen::VectorX<Real> begin = result.value;
   for (const stage& s : approach) {
     const pluck_problem problem(takes, {result.layout, guess.ac_coupled_Hz}, options, guess, result.value, s.partials, s.periods,
                                 false, {1e-2, 1e-2});
     descend(problem, result.layout, begin, result.value, 12, 1e-2, result.iterations);
   }
-  const Eigen::VectorXd near = result.value;
+  const Eigen::VectorX<Real> near = result.value;
   for (const double periods : horizon_periods) {
     result.value = near;
     finish(takes, guess, options, begin, periods, result);
@@ -157,11 +166,12 @@ inline bool is_causal(double causality, double sd, double most_sd = 0.1) {
 }
 
 /// Whether freeing the dispersion of the loss could leave so little: what a few steps from a fit that follows the whole record do.
-inline bool may_be_causal(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& freed,
-                          const pluck_fit_result& result) {
+template <class Real = double>
+bool may_be_causal(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& freed,
+                   const pluck_fit_result& result) {
   if (result.horizon_periods < horizon_periods.front()) return true;
   const pluck_layout layout(takes, freed);
-  Eigen::VectorXd value = result.value;
+  Eigen::VectorX<Real> value = result.value;
   pluck_problem problem(takes, {layout, guess.ac_coupled_Hz}, freed, guess, value, freed.most_partials, result.horizon_periods,
                         true, result.noise_N);
   int iterations = 0;
@@ -172,8 +182,9 @@ inline bool may_be_causal(const std::vector<pluck_take>& takes, const pluck_gues
 
 /// The same fit with loss that may disperse, where that follows more of the record, or as much and leaves a third of the excess at
 /// the partials or of the signal.
-inline void try_causality(const std::vector<pluck_take>& takes, const pluck_guess& guess, pluck_options options,
-                          const Eigen::VectorXd& begin, pluck_fit_result& result) {
+template <class = void>
+void try_causality(const std::vector<pluck_take>& takes, const pluck_guess& guess, pluck_options options,
+                   const Eigen::VectorXd& begin, pluck_fit_result& result) {
   if (options.causality || !result.more_than_noise) return;
   options.causality = true;
   if (!may_be_causal(takes, guess, options, result)) return;
@@ -189,8 +200,9 @@ inline void try_causality(const std::vector<pluck_take>& takes, const pluck_gues
 
 /// Fits `takes` together. Fails, with the take and the reason, where no release is found or the string does not ring as declared,
 /// that is, where more than `most_residual` of the signal (rms) is left.
-[[nodiscard]] inline outcome<pluck_fit_result> fit_plucks(const std::vector<pluck_take>& takes, const pluck_guess& guess,
-                                                          const pluck_options& options = {}, double most_residual = 0.6) {
+template <class Real = double>
+[[nodiscard]] outcome<pluck_fit_result> fit_plucks(const std::vector<pluck_take>& takes, const pluck_guess& guess,
+                                                   const pluck_options& options = {}, double most_residual = 0.6) {
   outcome<pluck_start> start = find_start(takes, guess);
   if (!start) return failure{start.error()};
   pluck_fit_result result;
@@ -198,7 +210,7 @@ inline void try_causality(const std::vector<pluck_take>& takes, const pluck_gues
   result.limits = options.limits_for(takes.front().rate_Hz);
   result.value = result.layout.initial(takes, guess, start->fundamental_Hz, start->release_s, start->position);
 
-  const Eigen::VectorXd begin = result.value;
+  const Eigen::VectorX<Real> begin = result.value;
   detail::approach_and_finish(takes, guess, options, result);
   detail::try_causality(takes, guess, options, begin, result);
   const double worst = detail::worst(result);
@@ -207,5 +219,7 @@ inline void try_causality(const std::vector<pluck_take>& takes, const pluck_gues
                    std::to_string(static_cast<int>(100 * worst)) + " % of the signal): check pitch, position, channels and rate"};
   return result;
 }
+ROSIN_INSTANTIATE(outcome<pluck_fit_result> fit_plucks(const std::vector<pluck_take>&, const pluck_guess&, const pluck_options&,
+                                                       double))
 
 }  // namespace rosin

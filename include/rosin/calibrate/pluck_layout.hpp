@@ -158,6 +158,7 @@ public:
   /// What is slow in a channel from `begin_s` on: its offset, the held string before the release (`held`: recorded newtons), and
   /// what a high-pass makes of both, H(s) = s / (s + w_c): the offset dies away, the step of the release leaves -held exp(-w_c
   /// t).
+  template <class = void>
   [[nodiscard]] damped_line slow_line(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
                                       std::size_t channel, double corner_Hz, double held) const {
     const double corner = 2 * std::numbers::pi * corner_Hz, offset = v[at(take, offset_near + static_cast<int>(channel))];
@@ -221,9 +222,10 @@ public:
   }
 
   /// Starting point: pitch, releases and positions as given; nominal values for the rest.
+  template <class Real = double>
   [[nodiscard]] Eigen::VectorXd initial(const std::vector<pluck_take>& takes, const pluck_guess& guess, double fundamental_Hz,
                                         const std::vector<double>& release_s, const std::vector<double>& position_of) const {
-    Eigen::VectorXd v = Eigen::VectorXd::Zero(size());
+    Eigen::VectorX<Real> v = Eigen::VectorX<Real>::Zero(size());
     v[fundamental] = fundamental_Hz;
     v[inharmonicity] = options_.stiffness ? guess.inharmonicity : 0.0;
     v[inverse_quality] = 1 / guess.quality;
@@ -237,6 +239,7 @@ public:
   }
 
   /// Whether a string could be like this, and near enough to where the fit began.
+  template <class = void>
   [[nodiscard]] bool plausible(const Eigen::VectorXd& v, const Eigen::VectorXd& start, double highest_Hz) const {
     bool ok = v.allFinite() && std::abs(v[fundamental] / start[fundamental] - 1) < 0.08 && v[inverse_quality] > 1e-7 &&
               v[inverse_quality] < 0.2 && v[inharmonicity] > -1e-5 && v[inharmonicity] < 0.01 && std::abs(v[convention]) < 300 &&
@@ -248,6 +251,7 @@ public:
     for (Eigen::Index p = first_of_uneven(); p < first_of_ends(); ++p) ok = ok && std::abs(v[p]) < 2 * uneven_doubt;
     return ok && ends_within_doubt(v, 2);
   }
+  template <class = void>
   [[nodiscard]] bool ends_within_doubt(const Eigen::VectorXd& v, double times = 1) const {
     for (Eigen::Index p = first_of_ends(); p < size(); ++p)
       if (!(std::abs(v[p]) <= times * end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3])) return false;

@@ -20,6 +20,7 @@ namespace rosin {
 /// Spectra of records of one length, and back. At least `pad` samples (> 0) on either side.
 class held_record {
 public:
+  template <class = void>
   held_record(std::size_t samples, std::size_t pad)
       : samples_{samples}, pad_{pad}, size_{fast_size(samples + 2 * pad)}, fft_(size_) {}
 
@@ -27,6 +28,7 @@ public:
   [[nodiscard]] double frequency_Hz(std::size_t k, double rate_Hz) const {
     return static_cast<double>(k) * rate_Hz / static_cast<double>(size_);
   }
+  template <class = void>
   [[nodiscard]] std::vector<std::complex<double>> spectrum(std::span<const double> x) {
     std::vector<double> wide(size_);
     for (std::size_t i = 0; i < size_; ++i) wide[i] = x[std::min(samples_ - 1, i < pad_ ? 0 : i - pad_)];
@@ -38,6 +40,7 @@ public:
     fft_.forward(wide.data(), out.data());
     return out;
   }
+  template <class = void>
   [[nodiscard]] std::vector<double> record(std::vector<std::complex<double>> spectrum) {
     std::vector<double> wide(size_);
     fft_.inverse(spectrum.data(), wide.data());

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <rosin/condition/record_at.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 
 namespace rosin {
@@ -17,13 +18,16 @@ namespace rosin {
 }
 
 /// The far channel's clock runs faster than the near one's by `relative`, each take begun together.
-inline pluck_effect clock_drift_effect(const string_facts&) {
+template <class Real = double>
+pluck_effect clock_drift_effect(const string_facts&) {
   pluck_effect e{
       .name = "clock-drift", .parameters = {by_score_steps("relative", -1e-3, 1e-3, 1e-7)}, .starts = {{0}}, .strength = -3};
-  e.undo = [](std::vector<pluck_take>& takes, const pluck_scene&, const pluck_layout&, const Eigen::VectorXd&, double relative) {
+  e.undo = [](std::vector<pluck_take>& takes, const pluck_scene&, const pluck_layout&, const Eigen::VectorX<Real>&,
+              double relative) {
     for (pluck_take& take : takes) take.force_N[1] = resampled(take.force_N[1], relative);
   };
   return e;
 }
+ROSIN_INSTANTIATE(pluck_effect clock_drift_effect(const string_facts&))
 
 }  // namespace rosin

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/wide_record.hpp>
 
 #include <cmath>
@@ -22,7 +23,8 @@ struct one_contact {
 };
 
 /// Nothing where no width is known or the terminations' forces are not given. Torsion: as the model has it, or none.
-[[nodiscard]] inline std::optional<one_contact> as_one_contact(const std::vector<contact_take>& all, const contact_model& model) {
+template <class = void>
+[[nodiscard]] std::optional<one_contact> as_one_contact(const std::vector<contact_take>& all, const contact_model& model) {
   constexpr torsion_values stiff{5, 1e12, 10};  // a string that does not turn
   const double half_s = model.width_s / 2;
   if (!(half_s > 0)) return std::nullopt;
@@ -50,5 +52,6 @@ struct one_contact {
   }
   return out;
 }
+ROSIN_INSTANTIATE(std::optional<one_contact> as_one_contact(const std::vector<contact_take>&, const contact_model&))
 
 }  // namespace rosin

@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick_effects.hpp>
 
 namespace rosin {
@@ -47,8 +48,9 @@ struct bending_fit {
 };
 
 /// `size`: about what the compliance is, which flow depends on.
-[[nodiscard]] inline bending_fit fit_bending(stick_bench& bench, double delay_s, const bristle_yield& yields, double size,
-                                             const std::vector<double>& softer) {
+template <class = void>
+[[nodiscard]] bending_fit fit_bending(stick_bench& bench, double delay_s, const bristle_yield& yields, double size,
+                                      const std::vector<double>& softer) {
   bending_fit out{.delay_s = delay_s, .yields = yields, .design = bench.declared()};
   const auto bends = bending_columns(bench, delay_s, softer);
   for (std::size_t t = 0; t < bends.size(); ++t) out.design.add_shared(t, bench.flowing(t, yields, bends[t], size));
@@ -61,8 +63,9 @@ struct bending_fit {
 }
 
 /// The likeliest delay near `delay_s`, by parabolas through three logarithms of it.
-[[nodiscard]] inline bending_fit find_delay(stick_bench& bench, double delay_s, const bristle_yield& yields, double size,
-                                            const std::vector<double>& softer, double step) {
+template <class = void>
+[[nodiscard]] bending_fit find_delay(stick_bench& bench, double delay_s, const bristle_yield& yields, double size,
+                                     const std::vector<double>& softer, double step) {
   constexpr double least_s = 1e-8, most_s = 1e-4;
   const auto at = [&](double delay) { return fit_bending(bench, std::clamp(delay, least_s, most_s), yields, size, softer); };
   bending_fit middle = at(delay_s), low = at(delay_s * std::exp(-step)), high = at(delay_s * std::exp(step));
@@ -80,7 +83,8 @@ struct bending_fit {
 }
 
 /// Where to begin: the delay by the measure of `quick`; size 0: nothing bends.
-[[nodiscard]] inline bending_fit start_bending(stick_bench& bench, const explained& quick, const std::vector<double>& softer) {
+template <class = void>
+[[nodiscard]] bending_fit start_bending(stick_bench& bench, const explained& quick, const std::vector<double>& softer) {
   bending_fit out;
   double best = 0;
   for (double delay = 1.25e-7; delay < 5e-5; delay *= 2) {
@@ -92,8 +96,9 @@ struct bending_fit {
 }
 
 /// The flow that explains most, for bristles of a compliance that bend as `bends` says.
-[[nodiscard]] inline bristle_yield find_yield(stick_bench& bench, const explained& quick,
-                                              const std::vector<std::vector<double>>& bends, double compliance) {
+template <class = void>
+[[nodiscard]] bristle_yield find_yield(stick_bench& bench, const explained& quick, const std::vector<std::vector<double>>& bends,
+                                       double compliance) {
   double best = 0;
   bristle_yield out;
   const auto attempt = [&](const bristle_yield& y) {
@@ -120,18 +125,20 @@ struct bending_fit {
 struct bending_noise {
   double share = 0, rms_m_s = 0;
 };
-[[nodiscard]] inline bending_noise noise_of(const stick_bench& bench, const bending_fit& fit, const std::vector<double>& softer) {
+template <class Real = double>
+[[nodiscard]] bending_noise noise_of(const stick_bench& bench, const bending_fit& fit, const std::vector<double>& softer) {
   const stacked s = stack(fit.design.rows);
   const Eigen::Index at = fit.design.rows.front().shared.cols() - 1;
-  const Eigen::VectorXd column = s.x.col(at);
-  Eigen::MatrixXd others = s.x;
+  const Eigen::VectorX<Real> column = s.x.col(at);
+  Eigen::MatrixX<Real> others = s.x;
   others.leftCols(2).setZero();
   others.col(at).setZero();
-  const Eigen::MatrixXd square = others.transpose() * others;
-  const Eigen::VectorXd along = others.transpose() * column;
+  const Eigen::MatrixX<Real> square = others.transpose() * others;
+  const Eigen::VectorX<Real> along = others.transpose() * column;
   const double loose = 1e-9 * std::max(1e-300, square.diagonal().maxCoeff());
-  const double left = column.squaredNorm() -
-                      along.dot((square + loose * Eigen::MatrixXd::Identity(square.rows(), square.cols())).ldlt().solve(along));
+  const double left =
+      column.squaredNorm() -
+      along.dot((square + loose * Eigen::MatrixX<Real>::Identity(square.rows(), square.cols())).ldlt().solve(along));
   double noise = 0;
   for (std::size_t t = 0; t < fit.design.rows.size(); ++t) {
     const double own = fit.size * (softer.empty() ? 1.0 : softer[t]);
@@ -141,6 +148,7 @@ struct bending_noise {
   return {left > 0 ? std::min(1.0, noise / (left * fit.size * fit.size)) : 1.0,
           std::sqrt(noise / static_cast<double>(s.y.size()))};
 }
+ROSIN_INSTANTIATE(bending_noise noise_of(const stick_bench&, const bending_fit&, const std::vector<double>&))
 
 /// The hypothesis, and how much of what it rests on is noise.
 struct bristle_estimate {
@@ -148,7 +156,8 @@ struct bristle_estimate {
   double noise_share = 0;
 };
 
-[[nodiscard]] inline bristle_estimate estimate_bristles(stick_bench& bench, const std::vector<double>& softer) {
+template <class = void>
+[[nodiscard]] bristle_estimate estimate_bristles(stick_bench& bench, const std::vector<double>& softer) {
   constexpr double clearly = 10;  // nats by which flow has to be likelier than none
   contact_hypothesis h{.effect = "elasto-plastic-friction"};
   h.free_parameters = 2;
@@ -194,13 +203,15 @@ struct bristle_estimate {
 
 /// The contact yields elastically before it slides. `softer`: each take's compliance against the stated one, where stiffness goes
 /// with the normal force (empty: all alike).
-[[nodiscard]] inline contact_hypothesis bristle_hypothesis(stick_bench& bench, const std::vector<double>& softer = {}) {
+template <class = void>
+[[nodiscard]] contact_hypothesis bristle_hypothesis(stick_bench& bench, const std::vector<double>& softer = {}) {
   return detail::estimate_bristles(bench, softer).hypothesis;
 }
 
 /// The same; where noise takes much of it, the parameters are those of narrower bands: noise bends bristles most at high
 /// frequencies.
-[[nodiscard]] inline contact_hypothesis bristle_hypothesis(stick_bench& bench, std::vector<contact_take> takes) {
+template <class = void>
+[[nodiscard]] contact_hypothesis bristle_hypothesis(stick_bench& bench, std::vector<contact_take> takes) {
   constexpr double much = 0.1, clearly_less = 0.8;
   auto found = detail::estimate_bristles(bench, {});
   while (found.hypothesis.decided && found.noise_share > much) {
@@ -215,5 +226,6 @@ struct bristle_estimate {
   }
   return found.hypothesis;
 }
+ROSIN_INSTANTIATE(contact_hypothesis bristle_hypothesis(stick_bench&, std::vector<contact_take>))
 
 }  // namespace rosin

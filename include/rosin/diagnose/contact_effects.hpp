@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_as_one.hpp>
 #include <rosin/diagnose/contact_bristles.hpp>
 #include <rosin/diagnose/contact_slip_effects.hpp>
@@ -93,8 +94,9 @@ inline void common_share(std::vector<contact_hypothesis>& hypotheses, const std:
     if (h.statistic == statistic) h.gain = share * h.density, h.held_out_gain = share * h.held_out_density, h.share = share;
 }
 
-[[nodiscard]] inline contact_hypothesis stick_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes,
-                                                         const std::string& effect) {
+template <class = void>
+[[nodiscard]] contact_hypothesis stick_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes,
+                                                  const std::string& effect) {
   if (effect == "torsion") return torsion_hypothesis(bench);
   if (effect == "rod-resonance")
     return bench.model().bristle_stiffness_N_m ? rod_beside_bristles(bench, takes) : rod_hypothesis(bench);
@@ -104,8 +106,8 @@ inline void common_share(std::vector<contact_hypothesis>& hypotheses, const std:
 }
 
 /// The likeliest effect once more with other conventions of torsional damping, which the effect itself may have hidden.
-inline void reconsider_damping(stick_bench& bench, const std::vector<contact_take>& takes,
-                               std::vector<contact_hypothesis>& hypotheses) {
+template <class = void>
+void reconsider_damping(stick_bench& bench, const std::vector<contact_take>& takes, std::vector<contact_hypothesis>& hypotheses) {
   const auto best =
       std::max_element(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.density < b.density; });
   if (best == hypotheses.end() || best->gain < 100 || best->effect == "torsion" || !bench.model().torsion) return;
@@ -121,7 +123,8 @@ inline void reconsider_damping(stick_bench& bench, const std::vector<contact_tak
   }
 }
 
-inline void add_stick_hypotheses(stick_bench& bench, const std::vector<contact_take>& takes, contact_findings& out) {
+template <class = void>
+void add_stick_hypotheses(stick_bench& bench, const std::vector<contact_take>& takes, contact_findings& out) {
   if (!bench.usable()) {
     out.warnings.emplace_back(
         "the string hardly sticks to the rod, or is not known to: torsion, rod and steadiness of speed cannot be told");
@@ -177,7 +180,8 @@ struct lost_touch {
   double share = 0, left = 0;
 };
 
-[[nodiscard]] inline lost_touch loses_touch(const stick_rows& rows, const Eigen::VectorXd& residual) {
+template <class = void>
+[[nodiscard]] lost_touch loses_touch(const stick_rows& rows, const Eigen::VectorXd& residual) {
   constexpr double hardly_any = 0.05, some = 0.15;  // coefficients of friction
   const Eigen::Index n = rows.target.size() - (rows.shared.cols() - 2);
   if (n < 1) return {};
@@ -185,8 +189,10 @@ struct lost_touch {
   const auto gone = friction.abs() < hardly_any && friction - left > some;
   return {static_cast<double>(gone.count()) / static_cast<double>(n), std::sqrt(left.square().mean())};
 }
+ROSIN_INSTANTIATE(lost_touch loses_touch(const stick_rows&, const Eigen::VectorXd&))
 
-inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_take>& takes, contact_findings& out) {
+template <class = void>
+void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_take>& takes, contact_findings& out) {
   const slip_bench bench(sticks, takes);
   if (!bench.usable()) {
     out.warnings.emplace_back("too few samples slip, or the normal force is unknown: the law of friction cannot be told");
@@ -217,7 +223,8 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
 }  // namespace detail
 
 /// All hypotheses about the contact, best first. Takes without a rod speed, or of fewer than 500 known samples, are left out.
-[[nodiscard]] inline contact_findings contact_hypotheses(const std::vector<contact_take>& all, const contact_model& model) {
+template <class = void>
+[[nodiscard]] contact_findings contact_hypotheses(const std::vector<contact_take>& all, const contact_model& model) {
   contact_findings out;
   std::vector<contact_take> takes;
   for (const auto& t : all) {
@@ -247,5 +254,6 @@ inline void add_slip_hypotheses(stick_bench& sticks, const std::vector<contact_t
   out.as_declared = std::none_of(out.hypotheses.begin(), out.hypotheses.end(), [&](const auto& h) { return out.stands(h); });
   return out;
 }
+ROSIN_INSTANTIATE(contact_findings contact_hypotheses(const std::vector<contact_take>&, const contact_model&))
 
 }  // namespace rosin

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/tone_band.hpp>
 #include <rosin/math/median.hpp>
 
@@ -87,19 +88,21 @@ struct tone_sums {
 /// explained_at(takes, f) for f = from, from + step, ...: every row turns on by an angle of its own.
 class tone_scan {
 public:
+  template <class Real = double>
   tone_scan(const std::vector<tone_rows>& takes, double from_Hz, double step_Hz) {
     for (const auto& t : takes) {
       const auto n = static_cast<Eigen::Index>(t.sample.size());
-      Eigen::ArrayXd time(n);
+      Eigen::ArrayX<Real> time(n);
       for (Eigen::Index i = 0; i < n; ++i)
         time[i] = 2 * std::numbers::pi * static_cast<double>(t.sample[static_cast<std::size_t>(i)]) / t.rate_Hz;
-      const Eigen::ArrayXd c = t.weight.array() * t.carrier.array();
+      const Eigen::ArrayX<Real> c = t.weight.array() * t.carrier.array();
       parts_.push_back({c * (from_Hz * time).sin(), c * (from_Hz * time).cos(), (step_Hz * time).sin(), (step_Hz * time).cos(),
                         t.weight.array() * t.residual.array()});
     }
   }
 
   /// At the frequency it stands at; then goes on to the next.
+  template <class = void>
   [[nodiscard]] double next() {
     double sum = 0;
     for (auto& p : parts_) {
@@ -124,7 +127,8 @@ private:
 };
 
 /// Neighbours put together, as far apart as a tone hardly moves on between them: the same sums from fewer rows.
-[[nodiscard]] inline tone_rows gathered(const tone_rows& r, double within_s) {
+template <class Real = double>
+[[nodiscard]] tone_rows gathered(const tone_rows& r, double within_s) {
   tone_rows out;
   out.rate_Hz = r.rate_Hz;
   const auto reach = static_cast<std::size_t>(within_s * r.rate_Hz);
@@ -142,17 +146,19 @@ private:
     out.sample.push_back((first + last) / 2);
   }
   const auto n = static_cast<Eigen::Index>(residual.size());
-  out.residual = Eigen::Map<const Eigen::VectorXd>(residual.data(), n);
-  out.carrier = Eigen::Map<const Eigen::VectorXd>(carrier.data(), n);
-  out.weight = Eigen::VectorXd::Ones(n);
+  out.residual = Eigen::Map<const Eigen::VectorX<Real>>(residual.data(), n);
+  out.carrier = Eigen::Map<const Eigen::VectorX<Real>>(carrier.data(), n);
+  out.weight = Eigen::VectorX<Real>::Ones(n);
   return out;
 }
+ROSIN_INSTANTIATE(tone_rows gathered(const tone_rows&, double))
 
 }  // namespace detail
 
 /// The tone that explains most, of those that fit twice into the record; of frequency 0 where none is looked for, or explains
 /// anything.
-[[nodiscard]] inline tone_fit find_tone(const std::vector<tone_rows>& takes, const tone_band& band = {}) {
+template <class = void>
+[[nodiscard]] tone_fit find_tone(const std::vector<tone_rows>& takes, const tone_band& band = {}) {
   const double length = detail::longest_s(takes);
   std::vector<tone_rows> coarse;
   for (const auto& t : takes) coarse.push_back(detail::gathered(t, 0.1 / band.highest_Hz));
@@ -184,6 +190,7 @@ private:
   best.around = median_of(nearby);
   return best;
 }
+ROSIN_INSTANTIATE(tone_fit find_tone(const std::vector<tone_rows>&, const tone_band&))
 
 /// Squares that the tone explains in each half of each take with size and phase from the other, less what it spoils.
 [[nodiscard]] inline double tone_prediction(const std::vector<tone_rows>& takes, double f) {
@@ -206,6 +213,7 @@ namespace detail {
 struct tone_power {
   double rows = 0, power = 0;
 
+  template <class = void>
   explicit tone_power(const std::vector<tone_rows>& takes) {
     for (const auto& t : takes) {
       rows += static_cast<double>(t.sample.size());
@@ -218,7 +226,8 @@ struct tone_power {
 };
 
 /// Gains of a Student likelihood from weighted squares: what a tone takes from the residual's power, at the final weights.
-inline void finish_tone(const std::vector<tone_rows>& takes, double scale, double share, tone_fit& tone, contact_hypothesis& h) {
+template <class = void>
+void finish_tone(const std::vector<tone_rows>& takes, double scale, double share, tone_fit& tone, contact_hypothesis& h) {
   const tone_power all(takes);
   const double rows = all.rows, length = longest_s(takes), left = all.without(tone.explained, scale),
                predicted = all.without(tone_prediction(takes, tone.frequency_Hz), scale);
@@ -236,12 +245,14 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
   h.free_parameters = 1 + 2 * static_cast<int>(takes.size());
   h.decided = tone.size > 4 * tone.size_sd && tone.stands_out();
 }
+ROSIN_INSTANTIATE(void finish_tone(const std::vector<tone_rows>&, double, double, tone_fit&, contact_hypothesis&))
 
 }  // namespace detail
 
 /// The rod's speed is not steady: a tone in the surface's velocity while it sticks, whatever the force. It sticks for most of a
 /// period, so that tones above the pitch show as well.
-[[nodiscard]] inline contact_hypothesis speed_ripple_hypothesis(stick_bench& bench) {
+template <class Real = double>
+[[nodiscard]] contact_hypothesis speed_ripple_hypothesis(stick_bench& bench) {
   constexpr double highest_ripple_Hz = 1500;
   contact_hypothesis h{.effect = "speed-ripple"};
   h.statistic = "stick-fluctuation";
@@ -250,7 +261,7 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
   for (std::size_t t = 0; t < bench.declared().rows.size(); ++t) {
     const auto& rows = bench.declared().rows[t];
     const double speed = bench.records()[t].take().rod_speed_m_s;
-    takes.push_back({s.residual[t], Eigen::VectorXd::Constant(rows.target.size(), speed),
+    takes.push_back({s.residual[t], Eigen::VectorX<Real>::Constant(rows.target.size(), speed),
                      detail::student_row_factors(s.residual[t], s.scale), rows.sample, bench.records()[t].take().rate_Hz});
   }
   auto tone = find_tone(takes, {highest_ripple_Hz, pitches_of(bench)});
@@ -270,5 +281,6 @@ inline void finish_tone(const std::vector<tone_rows>& takes, double scale, doubl
   h.fluctuation = fit.solution.scale / bench.speed_m_s();
   return h;
 }
+ROSIN_INSTANTIATE(contact_hypothesis speed_ripple_hypothesis(stick_bench&))
 
 }  // namespace rosin

@@ -11,6 +11,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/slip_bench.hpp>
 
 namespace rosin {
@@ -28,8 +29,9 @@ inline void settle_hypothesis(const law_fit& declared, const design_fit& fit, co
 }
 
 /// Slips may come once a period, so that a faster ripple looks like a slower one: it has to be likelier, by `rarer` nats.
-[[nodiscard]] inline tone_fit likely_tone(const std::vector<tone_rows>& takes, const std::vector<stroke_pitch>& pitches,
-                                          double scale, double share) {
+template <class = void>
+[[nodiscard]] tone_fit likely_tone(const std::vector<tone_rows>& takes, const std::vector<stroke_pitch>& pitches, double scale,
+                                   double share) {
   constexpr double rarer = 10, highest_ripple_Hz = 900;
   double lowest_Hz = highest_ripple_Hz / 0.75;
   for (const auto& p : pitches) lowest_Hz = std::min(lowest_Hz, p.pitch_Hz);
@@ -41,7 +43,8 @@ inline void settle_hypothesis(const law_fit& declared, const design_fit& fit, co
 }
 
 /// What a law leaves of each take, over what it says: rows for a tone of the normal force.
-[[nodiscard]] inline std::vector<tone_rows> left_by(const slip_bench& bench, const law_fit& law) {
+template <class = void>
+[[nodiscard]] std::vector<tone_rows> left_by(const slip_bench& bench, const law_fit& law) {
   const auto& s = law.fit.solution;
   std::vector<tone_rows> takes;
   for (std::size_t t = 0; t < bench.records().size(); ++t)
@@ -49,10 +52,12 @@ inline void settle_hypothesis(const law_fit& declared, const design_fit& fit, co
                      bench.records()[t].rate_Hz});
   return takes;
 }
+ROSIN_INSTANTIATE(std::vector<tone_rows> left_by(const slip_bench&, const law_fit&))
 
 }  // namespace detail
 
-[[nodiscard]] inline contact_hypothesis normal_ripple_hypothesis(const slip_bench& bench) {
+template <class = void>
+[[nodiscard]] contact_hypothesis normal_ripple_hypothesis(const slip_bench& bench) {
   contact_hypothesis h{.effect = "normal-force-ripple"};
   h.statistic = "friction-residual";
   const auto& s = bench.declared().fit.solution;
@@ -85,13 +90,15 @@ inline void settle_hypothesis(const law_fit& declared, const design_fit& fit, co
   h.parameters[1].sd = std::hypot(h.parameters[1].sd, size * bench.level_sd() / std::max(0.1, mu - bench.level_sd()));
   return h;
 }
+ROSIN_INSTANTIATE(contact_hypothesis normal_ripple_hypothesis(const slip_bench&))
 
 namespace detail {
 
 /// Marks the rows of one part at which the others tell of a law's spline: none beyond what they hold, and none that keep it smooth.
-[[nodiscard]] inline std::vector<char> told_by_others(const std::vector<stick_rows>& parts, std::size_t which) {
+template <class Real = double>
+[[nodiscard]] std::vector<char> told_by_others(const std::vector<stick_rows>& parts, std::size_t which) {
   constexpr double few = 5, hardly = 0.1;  // samples under a piece of the spline; a row's share in pieces with no more
-  Eigen::VectorXd seen = Eigen::VectorXd::Zero(parts[which].shared.cols());
+  Eigen::VectorX<Real> seen = Eigen::VectorX<Real>::Zero(parts[which].shared.cols());
   for (std::size_t t = 0; t < parts.size(); ++t)
     for (Eigen::Index i = 0; t != which && i < parts[t].shared.rows(); ++i)
       if (parts[t].shared.row(i).sum() > 0.5) seen += parts[t].shared.row(i).transpose();
@@ -102,12 +109,14 @@ namespace detail {
   }
   return told;
 }
+ROSIN_INSTANTIATE(std::vector<char> told_by_others(const std::vector<stick_rows>&, std::size_t))
 
 /// By how many nats one law predicts each take better than another, from the other takes, where these tell of either.
-[[nodiscard]] inline double predicts_better(const stick_design& law, const stick_design& than, double floor) {
+template <class Real = double>
+[[nodiscard]] double predicts_better(const stick_design& law, const stick_design& than, double floor) {
   const auto mine = at_least_two(law.rows), other = at_least_two(than.rows);
   const auto none = [](const std::vector<stick_rows>& parts) {
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(parts.front().shared.cols());
+    const Eigen::VectorX<Real> zero = Eigen::VectorX<Real>::Zero(parts.front().shared.cols());
     return stick_prior{zero, zero};
   };
   double nats = 0;
@@ -120,9 +129,11 @@ namespace detail {
   }
   return nats;
 }
+ROSIN_INSTANTIATE(double predicts_better(const stick_design&, const stick_design&, double))
 
 /// The same within each take, one half from the other; nothing where a take is not predicted better.
-[[nodiscard]] inline double predicts_halves_better(const stick_design& law, const stick_design& than, double floor) {
+template <class = void>
+[[nodiscard]] double predicts_halves_better(const stick_design& law, const stick_design& than, double floor) {
   double nats = 0;
   for (std::size_t t = 0; t < law.rows.size(); ++t) {
     stick_design mine = law, other = than;
@@ -133,6 +144,7 @@ namespace detail {
   }
   return nats;
 }
+ROSIN_INSTANTIATE(double predicts_halves_better(const stick_design&, const stick_design&, double))
 
 /// What a thermal law remembers heat by.
 [[nodiscard]] inline std::vector<contact_parameter> heat_of(const law_fit& law) {
@@ -146,8 +158,9 @@ namespace detail {
 }
 
 /// Whether a tone of the normal force accounts for as much of what the declared law leaves as a hypothesis does.
-[[nodiscard]] inline bool is_a_tone_as_well(const slip_bench& bench, const law_fit& declared, double floor,
-                                            const contact_hypothesis& h) {
+template <class = void>
+[[nodiscard]] bool is_a_tone_as_well(const slip_bench& bench, const law_fit& declared, double floor,
+                                     const contact_hypothesis& h) {
   const auto& fit = declared.fit;
   const tone_fit tone = likely_tone(left_by(bench, declared), bench.pitches(), fit.solution.scale, fit.share);
   if (!(tone.frequency_Hz > 0)) return false;
@@ -161,7 +174,8 @@ namespace detail {
 /// The other law than the declared one. What the declared curve leaves may be as little as imperfect models leave: another law has
 /// to explain it the better then, and no tone may do as well. Heat is the cause of what it takes the most away of; of what else is
 /// wrong with a contact or a sensor it takes hardly anything.
-[[nodiscard]] inline contact_hypothesis law_hypothesis(const slip_bench& bench) {
+template <class = void>
+[[nodiscard]] contact_hypothesis law_hypothesis(const slip_bench& bench) {
   const bool thermal = bench.declared().law != contact_law::thermal;
   contact_hypothesis h{.effect = thermal ? "thermal-friction" : "velocity-curve-friction"};
   h.statistic = "friction-residual";
@@ -191,5 +205,6 @@ namespace detail {
   if (thermal) h.parameters = detail::heat_of(other);
   return h;
 }
+ROSIN_INSTANTIATE(contact_hypothesis law_hypothesis(const slip_bench&))
 
 }  // namespace rosin

@@ -29,6 +29,7 @@ public:
     return out;
   }
 
+  template <class = void>
   stick_bench(const std::vector<contact_take>& takes, const contact_model& model)
       : records_{detail::records_of(stick_takes(takes))}, model_{model} {
     if (records_.empty()) return;
@@ -43,6 +44,7 @@ public:
   }
 
   /// Makes the declared equation anew with this convention of damping.
+  template <class = void>
   void use_damping(torsion_damping damping) {
     damping_ = damping;
     declared_ = equation(model_.torsion, damping, false);
@@ -70,6 +72,7 @@ public:
   [[nodiscard]] const std::vector<std::vector<double>>& relative_m_s() const noexcept { return relative_; }
 
   /// The equation for another torsion; without one, for a string that does not turn. `loose`: parameters free, not declared.
+  template <class = void>
   [[nodiscard]] stick_design equation(const std::optional<torsion_values>& torsion, torsion_damping damping, bool loose) {
     stick_design d;
     for (auto& record : records_) {
@@ -95,6 +98,7 @@ public:
   }
 
   /// Each take's own tone of the rod's speed: two more columns of its own.
+  template <class = void>
   void add_rod_tone(stick_design& d, double frequency_Hz) const {
     for (std::size_t t = 0; t < records_.size(); ++t)
       for (const double turn : quarter_turns) d.add_own(t, rod_wave(records_[t], frequency_Hz, turn));
@@ -151,6 +155,7 @@ private:
     return most;
   }
 
+  template <class = void>
   [[nodiscard]] static std::vector<double> slope(stick_record& record, const torsion_values& at, torsion_damping damping, int k) {
     Eigen::Vector3d up = at.logs(), down = up;
     const double step = k == 0 ? 2e-4 : 2e-3;
@@ -199,6 +204,7 @@ private:
     }
   }
 
+  template <class = void>
   void declare() {
     if (!usable()) return;
     use_damping(torsion_damping::constant_q);
@@ -212,6 +218,7 @@ private:
     }
   }
 
+  template <class = void>
   void include_found(stick_design& d) {
     if (model_.rod) {
       const auto [frequency_Hz, q, mass_kg] = *model_.rod;

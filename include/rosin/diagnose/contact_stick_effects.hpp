@@ -14,6 +14,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick.hpp>
 
 namespace rosin {
@@ -23,36 +24,39 @@ namespace detail {
 /// How much of the residual of a design further columns would explain, in units of its variance.
 class explained {
 public:
+  template <class = void>
   explicit explained(const stick_design& design, const stick_solution& solution)
       : explained(design, solution.residual, solution.scale) {}
 
   /// With the weights that another fit of the same rows leaves them. Coefficients are held about zero as loosely as their bounds
   /// are wide.
+  template <class Real = double>
   explained(const stick_design& design, const std::vector<Eigen::VectorXd>& residual, double scale)
       : design_{&design}, scale_{scale} {
     const stacked s = stack(design.rows);
-    Eigen::VectorXd left(s.y.size());
+    Eigen::VectorX<Real> left(s.y.size());
     for (std::size_t t = 0; t < design.rows.size(); ++t) left.segment(s.first[t], s.first[t + 1] - s.first[t]) = residual[t];
     weight_ = student_row_factors(left, scale_);
     first_ = s.first;
     basis_ = weight_.asDiagonal() * s.x;
-    Eigen::VectorXd hold = Eigen::VectorXd::Constant(s.x.cols(), 1e-12);
+    Eigen::VectorX<Real> hold = Eigen::VectorX<Real>::Constant(s.x.cols(), 1e-12);
     for (std::size_t i = 0; i < design.bounds.size(); ++i)
       hold[static_cast<Eigen::Index>(i)] += std::pow(2 * scale_ / std::max(1e-9, design.bounds[i][1] - design.bounds[i][0]), 2);
-    inverse_ = (Eigen::MatrixXd(basis_.transpose() * basis_) + Eigen::MatrixXd(hold.asDiagonal())).inverse();
+    inverse_ = (Eigen::MatrixX<Real>(basis_.transpose() * basis_) + Eigen::MatrixX<Real>(hold.asDiagonal())).inverse();
     residual_ = weight_.cwiseProduct(s.y);
     residual_ -= basis_ * (inverse_ * (basis_.transpose() * residual_));
   }
 
   /// One column, given for all samples of each take; `size` is its coefficient.
+  template <class Real = double>
   [[nodiscard]] double by(const std::vector<std::vector<double>>& samples, double& size) const {
-    Eigen::VectorXd c(residual_.size());
+    Eigen::VectorX<Real> c(residual_.size());
     for (std::size_t t = 0; t < samples.size(); ++t) {
       const auto& at = design_->rows[t].sample;
       for (std::size_t i = 0; i < at.size(); ++i) c[first_[t] + static_cast<Eigen::Index>(i)] = samples[t][at[i]];
     }
     c = weight_.cwiseProduct(c);
-    const Eigen::VectorXd along = basis_.transpose() * c;
+    const Eigen::VectorX<Real> along = basis_.transpose() * c;
     const double left = c.squaredNorm() - along.dot(inverse_ * along);
     if (!(left > 1e-9 * c.squaredNorm())) return size = 0;
     const double dot = c.dot(residual_);
@@ -92,12 +96,14 @@ struct rod_fit {
 
 /// Gauss-Newton on rods of unit mass added to the declared equation; theta = ln(frequency), ln(q) stays between `low` and `high`.
 /// Where it would still go after the last step is part of the doubt.
-[[nodiscard]] inline rod_fit fit_rod(stick_bench& bench, Eigen::VectorXd theta, double size, const Eigen::VectorXd& low,
-                                     const Eigen::VectorXd& high, int steps) {
-  const auto rod = [](const Eigen::VectorXd& at) { return rod_mobility{std::exp(at[0]), std::exp(at[1])}; };
+template <class Real = double>
+[[nodiscard]] rod_fit fit_rod(stick_bench& bench, Eigen::VectorXd theta, double size, const Eigen::VectorXd& low,
+                              const Eigen::VectorXd& high, int steps) {
+  const auto rod = [](const Eigen::VectorX<Real>& at) { return rod_mobility{std::exp(at[0]), std::exp(at[1])}; };
   rod_fit out{.theta = theta, .size = size, .covariance = {}};
   constexpr double farthest = 0.3;
-  Eigen::VectorXd reach = Eigen::VectorXd::Constant(theta.size(), farthest), last = Eigen::VectorXd::Zero(theta.size());
+  Eigen::VectorX<Real> reach = Eigen::VectorX<Real>::Constant(theta.size(), farthest),
+                       last = Eigen::VectorX<Real>::Zero(theta.size());
   for (int step = 0; step <= steps; ++step) {
     if (step == steps) reach.setConstant(farthest);
     stick_design d = bench.declared();
@@ -105,7 +111,7 @@ struct rod_fit {
       auto& record = bench.records()[t];
       d.add_shared(t, record.force_through(rod(out.theta)));
       for (Eigen::Index k = 0; k < theta.size(); ++k) {
-        Eigen::VectorXd up = out.theta, down = out.theta;
+        Eigen::VectorX<Real> up = out.theta, down = out.theta;
         up[k] += 2e-3, down[k] -= 2e-3;
         d.add_shared(t, record.force_through(transfer_slope<rod_mobility>{rod(up), rod(down), out.size / 4e-3}));
       }
@@ -118,7 +124,7 @@ struct rod_fit {
     else out.fit.solution = bounded_regression(d, bench.floor_m_s(), held);
     out.size = out.fit.solution.shared[first];
     out.covariance = out.fit.solution.covariance.bottomRightCorner(theta.size() + 1, theta.size() + 1);
-    const Eigen::VectorXd move = out.fit.solution.shared.tail(theta.size());
+    const Eigen::VectorX<Real> move = out.fit.solution.shared.tail(theta.size());
     if (step == steps) out.covariance.diagonal().tail(theta.size()) += move.cwiseAbs2();
     if (step == steps || !(out.size > 0)) break;
     for (Eigen::Index k = 0; k < theta.size(); ++k)
@@ -160,7 +166,8 @@ template <std::size_t N>
 }  // namespace detail
 
 /// Torsion is not as declared: its parameters free.
-[[nodiscard]] inline contact_hypothesis torsion_hypothesis(stick_bench& bench) {
+template <class = void>
+[[nodiscard]] contact_hypothesis torsion_hypothesis(stick_bench& bench) {
   contact_hypothesis h{.effect = "torsion"};
   h.free_parameters = 3;
   const auto& free = bench.free_torsion();
@@ -174,9 +181,11 @@ template <std::size_t N>
   h.decided = free->decided();
   return h;
 }
+ROSIN_INSTANTIATE(contact_hypothesis torsion_hypothesis(stick_bench&))
 
 /// The rod gives way along its motion.
-[[nodiscard]] inline contact_hypothesis rod_hypothesis(stick_bench& bench) {
+template <class Real = double>
+[[nodiscard]] contact_hypothesis rod_hypothesis(stick_bench& bench) {
   contact_hypothesis h{.effect = "rod-resonance"};
   h.free_parameters = 3;
   const detail::explained quick(bench.declared(), bench.fit().solution);
@@ -210,7 +219,7 @@ template <std::size_t N>
                                      Eigen::Vector2d(std::log(highest_Hz), std::log(highest_q)), 5);
   detail::settle_hypothesis(bench, found.fit, h);
   const double f0 = std::exp(found.theta[0]), q = std::exp(found.theta[1]), mass = found.size > 0 ? 1 / found.size : 1e9;
-  const Eigen::VectorXd sd = contact_faults::rod_scatter * found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorX<Real> sd = contact_faults::rod_scatter * found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   if (sd.size() == 3)
     h.parameters = {{"frequency_Hz", f0, f0 * std::hypot(sd[1], contact_faults::rod_frequency)},
                     {"q", q, q * std::hypot(sd[2], contact_faults::rod_q)},
@@ -228,10 +237,12 @@ template <std::size_t N>
   h.peculiar = h.decided && weight < light && !detail::is_at_torsion(bench, f0);
   return h;
 }
+ROSIN_INSTANTIATE(contact_hypothesis rod_hypothesis(stick_bench&))
 
 /// It creeps while it sticks, the faster the nearer to the limit of friction (creep.hpp):  v = -sgn(f) v_N exp((|f|/N - 1) / a),
 /// v_N as fast as it would be under a force as large as the normal force.
-[[nodiscard]] inline contact_hypothesis creep_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes) {
+template <class = void>
+[[nodiscard]] contact_hypothesis creep_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes) {
   contact_hypothesis h{.effect = "creep"};
   h.free_parameters = 2;
   const detail::explained quick(bench.declared(), bench.fit().solution);
@@ -280,5 +291,6 @@ template <std::size_t N>
                   {"sharpness", sharp, sharp * std::hypot(of_log, contact_faults::creep)}};
   return h;
 }
+ROSIN_INSTANTIATE(contact_hypothesis creep_hypothesis(stick_bench&, const std::vector<contact_take>&))
 
 }  // namespace rosin

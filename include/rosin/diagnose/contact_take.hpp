@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/bristle_yield.hpp>
 #include <rosin/diagnose/string_side.hpp>
 #include <rosin/torsion/torsion_fit.hpp>
@@ -90,12 +91,14 @@ inline void leave_out_silence(contact_take& t) {
 
 /// Finds how a stroke's rod approaches its speed, and until when too much of that is missing to count; nothing changes where the rod
 /// is as fast as declared by start_s. What sticks to the rod is the surface: the centre's median rises besides while a string settles.
-inline void follow_start(contact_take& t, const std::optional<torsion_values>& torsion = {}) {
+template <class = void>
+void follow_start(contact_take& t, const std::optional<torsion_values>& torsion = {}) {
   constexpr double missing = 0.1;
   const double period_s = 2 * (t.delay_s[0] + t.delay_s[1]);
   t.approach = find_rod_approach(surface_m_s(t, torsion), t.rate_Hz, period_s, t.rod_speed_m_s, t.start_s);
   t.start_s = std::max(t.start_s, t.approach.within_s(missing));
 }
+ROSIN_INSTANTIATE(void follow_start(contact_take&, const std::optional<torsion_values>&))
 
 enum class contact_law { velocity_curve, thermal, elasto_plastic };
 

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/wide_record.hpp>
 
 namespace rosin {
@@ -18,8 +19,9 @@ namespace detail {
 /// an offset and a compliance free, found from far (with Cauchy's weights) to near. A slip counts no more for being fast: where
 /// parts of a bow slide on while others hold, a loss that grows with r, be it as slowly as Cauchy's, would rather have the slips
 /// slow than the places still.
-[[nodiscard]] inline double loose_samples(const std::vector<double>& relative_m_s, const std::vector<double>& compliance,
-                                          std::size_t begin, std::size_t end, double speed_m_s) {
+template <class = void>
+[[nodiscard]] double loose_samples(const std::vector<double>& relative_m_s, const std::vector<double>& compliance,
+                                   std::size_t begin, std::size_t end, double speed_m_s) {
   Eigen::Vector2d value(0, 0);
   double loose = 0;
   for (const double scale : {1.0, 0.5, 0.25, 0.12, 0.12, 0.06, 0.05, 0.05, 0.05}) {
@@ -41,7 +43,8 @@ namespace detail {
 }
 
 /// Of both places.
-[[nodiscard]] inline double width_cost(const wide_motion& m, const stick_record& record) {
+template <class = void>
+[[nodiscard]] double width_cost(const wide_motion& m, const stick_record& record) {
   double cost = 0;
   for (const auto* v : {&m.near_m_s, &m.far_m_s})
     cost += loose_samples(*v, m.compliance[0], record.begin(), record.end(), std::abs(record.take().rod_speed_m_s));
@@ -49,7 +52,8 @@ namespace detail {
 }
 
 /// The half delay that costs least in one take; 0: no width costs less than none.
-[[nodiscard]] inline double search_width(wide_record& wide, const stick_record& record, const torsion_values& torsion) {
+template <class = void>
+[[nodiscard]] double search_width(wide_record& wide, const stick_record& record, const torsion_values& torsion) {
   const auto& delay = record.take().delay_s;
   const auto cost = [&](double d) {
     return width_cost(wide.at(d, record.window(), torsion, torsion_damping::constant_q, 1), record);
@@ -95,8 +99,9 @@ struct width_model {
 
 /// The stick equation at both places, of all takes, on the samples that are marked. Shared columns: compliance, the slopes of
 /// torsion's three logarithms, and of the width's where there is one.
-[[nodiscard]] inline stick_design width_design(stick_bench& bench, std::vector<wide_record>& wide,
-                                               const std::vector<std::vector<char>>& marked, const width_model& m) {
+template <class = void>
+[[nodiscard]] stick_design width_design(stick_bench& bench, std::vector<wide_record>& wide,
+                                        const std::vector<std::vector<char>>& marked, const width_model& m) {
   stick_design d;
   for (std::size_t t = 0; t < wide.size(); ++t) {
     const smooth_window window = wide_record::below_pole(bench.records()[t].window(), m.below);
@@ -149,8 +154,9 @@ struct settled_width {
 
 /// The width settled by Gauss-Newton steps, and torsion with it where that is not declared, with whichever convention of torsional
 /// damping leaves less.
-[[nodiscard]] inline settled_width settle_width(stick_bench& bench, std::vector<wide_record>& wide,
-                                                const std::vector<std::vector<char>>& marked, double floor, width_model m) {
+template <class = void>
+[[nodiscard]] settled_width settle_width(stick_bench& bench, std::vector<wide_record>& wide,
+                                         const std::vector<std::vector<char>>& marked, double floor, width_model m) {
   const auto settled = [&](torsion_damping damping) {
     settled_width out{m, {}, {}};
     out.model.damping = damping;
@@ -179,8 +185,9 @@ struct sought_width {
 };
 
 /// Sought, then settled. What torsion seems to be depends on the width, and the other way round: where it is not declared, in turn.
-[[nodiscard]] inline std::optional<sought_width> seek_width(stick_bench& bench, std::vector<wide_record>& wide, double floor,
-                                                            torsion_values torsion) {
+template <class = void>
+[[nodiscard]] std::optional<sought_width> seek_width(stick_bench& bench, std::vector<wide_record>& wide, double floor,
+                                                     torsion_values torsion) {
   std::optional<sought_width> out;
   for (int round = 0; round < (bench.model().torsion ? 1 : 3); ++round) {
     const double searched = search_width(wide[0], bench.records()[0], torsion);
@@ -200,8 +207,8 @@ struct sought_width {
 }  // namespace detail
 
 /// Nothing where the terminations' forces are not given, or both versions agree so well that there is no width to see.
-[[nodiscard]] inline std::optional<contact_hypothesis> width_hypothesis(stick_bench& bench,
-                                                                        const std::vector<contact_take>& takes) {
+template <class = void>
+[[nodiscard]] std::optional<contact_hypothesis> width_hypothesis(stick_bench& bench, const std::vector<contact_take>& takes) {
   const auto torsion = bench.model().torsion  ? bench.model().torsion
                        : bench.free_torsion() ? std::optional(bench.free_torsion()->value)
                                               : std::nullopt;
@@ -249,5 +256,6 @@ struct sought_width {
   h.decided = best > 5e-7 && wide_fit.solution.scale < 0.7 * point_fit.solution.scale && h.fluctuation < 0.07;
   return h;
 }
+ROSIN_INSTANTIATE(std::optional<contact_hypothesis> width_hypothesis(stick_bench&, const std::vector<contact_take>&))
 
 }  // namespace rosin

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/diagnose/sensor_chain.hpp>
 #include <rosin/math/spectrum_line.hpp>
@@ -22,7 +23,8 @@ struct hum_line {
   std::array<std::complex<double>, 2> shape{};  ///< of length 1
 };
 
-[[nodiscard]] inline std::vector<hum_line> hum_of_plucks(const scene_data& data, const scene_fit& fit) {
+template <class = void>
+[[nodiscard]] std::vector<hum_line> hum_of_plucks(const scene_data& data, const scene_fit& fit) {
   const scene_plucks plucks(data.layout, data.guess.ac_coupled_Hz, fit.effects);
   std::vector<std::vector<hum_phasor>> takes;
   for (int t = 0; t < static_cast<int>(data.layout.takes()); ++t) takes.push_back(plucks.scene(fit.value, t).hum);
@@ -72,8 +74,9 @@ inline void take_out_line(std::array<std::vector<double>, 2>& x, const hum_line&
 }
 
 /// In place, near and far; `delay_s`: from the ends to where the string is bowed.
-inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::array<std::vector<double>, 2>& recorded,
-                         const std::array<double, 2>& delay_s, double rate_Hz, double edge_Hz) {
+template <class = void>
+void undo_sensors(const scene_data& data, const scene_fit& fit, std::array<std::vector<double>, 2>& recorded,
+                  const std::array<double, 2>& delay_s, double rate_Hz, double edge_Hz) {
   const pluck_scene scene = scene_of(data, fit);
   const std::array<double, 2> gain{std::exp(fit.value[pluck_layout::gain_near]), std::exp(fit.value[pluck_layout::gain_far])};
   Eigen::Index at = data.layout.size();
@@ -101,5 +104,7 @@ inline void undo_sensors(const scene_data& data, const scene_fit& fit, std::arra
     if (sensor.resonance_Hz > 0 || sensor.delay_s != 0) detail::divide_by_sensor(recorded[c], sensor, rate_Hz, edge_Hz);
   }
 }
+ROSIN_INSTANTIATE(void undo_sensors(const scene_data&, const scene_fit&, std::array<std::vector<double>, 2>&,
+                                    const std::array<double, 2>&, double, double))
 
 }  // namespace rosin

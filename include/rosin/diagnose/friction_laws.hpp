@@ -15,6 +15,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/slip_record.hpp>
 
 namespace rosin {
@@ -59,7 +60,8 @@ namespace detail {
 
 /// A few rows more, hardly of weight: where a take has no samples the spline goes on straight, so that it can predict another
 /// take.
-inline void keep_smooth(stick_rows& rows, double weight = 0.1) {
+template <class = void>
+void keep_smooth(stick_rows& rows, double weight = 0.1) {
   const Eigen::Index n = rows.target.size(), extra = rows.shared.cols() - 2;
   rows.target.conservativeResize(n + extra);
   rows.shared.conservativeResize(n + extra, Eigen::NoChange);
@@ -74,18 +76,20 @@ inline void keep_smooth(stick_rows& rows, double weight = 0.1) {
 
 /// Strokes that may be off against the first by a constant each: a column of its own for each but the first, of which the rows
 /// that keep the law smooth have nothing.
-inline void free_levels(stick_design& d) {
+template <class Real = double>
+void free_levels(stick_design& d) {
   for (std::size_t t = 1; t < d.rows.size(); ++t) {
     auto& rows = d.rows[t];
     const Eigen::Index c = rows.own.cols(), samples = rows.target.size() - (rows.shared.cols() - 2);
     rows.own.conservativeResize(rows.target.size(), c + 1);
-    rows.own.col(c) << Eigen::VectorXd::Ones(samples), Eigen::VectorXd::Zero(rows.target.size() - samples);
+    rows.own.col(c) << Eigen::VectorX<Real>::Ones(samples), Eigen::VectorX<Real>::Zero(rows.target.size() - samples);
   }
 }
 
 /// Rows of the spline equation for one x per sample and take; every `stride`-th slip sample.
-[[nodiscard]] inline stick_design law_design(const std::vector<slip_record>& records, const std::vector<Eigen::VectorXd>& x,
-                                             std::size_t stride) {
+template <class Real = double>
+[[nodiscard]] stick_design law_design(const std::vector<slip_record>& records, const std::vector<Eigen::VectorXd>& x,
+                                      std::size_t stride) {
   std::vector<double> all;
   for (const auto& v : x) all.insert(all.end(), v.data(), v.data() + v.size());
   const smooth_functions functions(all);
@@ -93,7 +97,7 @@ inline void free_levels(stick_design& d) {
   for (std::size_t t = 0; t < records.size(); ++t) {
     const auto& s = records[t].slips;
     const auto n = (s.sample.size() + stride - 1) / stride;
-    Eigen::VectorXd at(static_cast<Eigen::Index>(n)), y(at.size());
+    Eigen::VectorX<Real> at(static_cast<Eigen::Index>(n)), y(at.size());
     stick_rows rows;
     for (std::size_t i = 0; i < n; ++i) {
       const auto k = static_cast<Eigen::Index>(i * stride);
@@ -103,12 +107,13 @@ inline void free_levels(stick_design& d) {
     rows.target = y;
     rows.shared = functions(at);
     keep_smooth(rows);
-    rows.own = Eigen::MatrixXd(rows.target.size(), 0);
+    rows.own = Eigen::MatrixX<Real>(rows.target.size(), 0);
     d.rows.push_back(std::move(rows));
   }
   for (Eigen::Index c = 0; c < d.rows.front().shared.cols(); ++c) d.add_bound(-1e30, 1e30);
   return d;
 }
+ROSIN_INSTANTIATE(stick_design law_design(const std::vector<slip_record>&, const std::vector<Eigen::VectorXd>&, std::size_t))
 
 /// What a law remembers, at the slips: the value of the sample before.
 [[nodiscard]] inline Eigen::VectorXd before_slips(const slip_record& r, const std::vector<double>& memory) {
@@ -120,14 +125,15 @@ inline void free_levels(stick_design& d) {
 
 /// What a design leaves, quickly, for a search: the inverse of the geometric mean of Student's densities, a few passes of
 /// reweighting. (Ordinary least squares would follow the few samples at which a slip was cut too late.)
-[[nodiscard]] inline double quick_residual(const stick_design& d, double floor = 1e-6) {
+template <class Real = double>
+[[nodiscard]] double quick_residual(const stick_design& d, double floor = 1e-6) {
   const stacked s = stack(d.rows);
   const Eigen::Index n = std::max<Eigen::Index>(1, s.y.size());
-  Eigen::VectorXd weight = Eigen::VectorXd::Ones(s.y.size()), r = s.y;
+  Eigen::VectorX<Real> weight = Eigen::VectorX<Real>::Ones(s.y.size()), r = s.y;
   double scale = 0, density = 0;
   for (int pass = 0; pass < 6; ++pass) {
-    const Eigen::MatrixXd weighted = weight.asDiagonal() * s.x;
-    Eigen::MatrixXd h = s.x.transpose() * weighted;
+    const Eigen::MatrixX<Real> weighted = weight.asDiagonal() * s.x;
+    Eigen::MatrixX<Real> h = s.x.transpose() * weighted;
     h.diagonal().array() += 1e-9 * h.diagonal().maxCoeff();
     r = s.y - s.x * h.ldlt().solve(weighted.transpose() * s.y);
     for (int inner = 0; inner < 3; ++inner) {
@@ -138,6 +144,7 @@ inline void free_levels(stick_design& d) {
   for (const double x : r) density += student_log_density(x, scale);
   return std::exp(-density / static_cast<double>(n));
 }
+ROSIN_INSTANTIATE(double quick_residual(const stick_design&, double))
 
 [[nodiscard]] inline std::vector<double> heat_along(const slip_record& r, const contact_heat_parameters<double>& heat) {
   return temperature_along(r.force_N, r.relative_m_s, r.phases, r.normal_N, r.rate_Hz, heat, r.load);
@@ -165,18 +172,21 @@ template <class Memory>
 }  // namespace detail
 
 /// Precondition of all fits: 200 slip samples in all.
-[[nodiscard]] inline law_fit fit_velocity_curve(const std::vector<slip_record>& records, double floor) {
-  std::vector<Eigen::VectorXd> x;
+template <class Real = double>
+[[nodiscard]] law_fit fit_velocity_curve(const std::vector<slip_record>& records, double floor) {
+  std::vector<Eigen::VectorX<Real>> x;
   for (const auto& r : records) x.push_back(r.slips.speed_m_s);
   law_fit out;
   out.design = detail::law_design(records, x, 2);
   out.fit = fit_design(out.design, floor);
   return out;
 }
+ROSIN_INSTANTIATE(law_fit fit_velocity_curve(const std::vector<slip_record>&, double))
 
 /// A contact whose heat memory is known.
-[[nodiscard]] inline law_fit fit_memory(const std::vector<slip_record>& records, double floor,
-                                        const contact_heat_parameters<double>& heat) {
+template <class = void>
+[[nodiscard]] law_fit fit_memory(const std::vector<slip_record>& records, double floor,
+                                 const contact_heat_parameters<double>& heat) {
   law_fit out;
   out.law = contact_law::thermal, out.heat_memory = true, out.heat = heat;
   out.design = detail::memory_design(
@@ -186,7 +196,8 @@ template <class Memory>
 }
 
 /// A contact of one temperature whose rates are known.
-[[nodiscard]] inline law_fit fit_rates(const std::vector<slip_record>& records, double floor, const thermal_rates& rates) {
+template <class = void>
+[[nodiscard]] law_fit fit_rates(const std::vector<slip_record>& records, double floor, const thermal_rates& rates) {
   law_fit out;
   out.law = contact_law::thermal, out.rates = rates;
   out.design = detail::rates_design(records, detail::slipping_in(records), rates, 2);
@@ -195,12 +206,14 @@ template <class Memory>
 }
 
 /// A law that was found, on other forces along the same motion: its memory is kept.
-[[nodiscard]] inline law_fit fit_again(const std::vector<slip_record>& records, double floor, const law_fit& found) {
+template <class = void>
+[[nodiscard]] law_fit fit_again(const std::vector<slip_record>& records, double floor, const law_fit& found) {
   if (found.law != contact_law::thermal) return fit_velocity_curve(records, floor);
   return found.heat_memory ? fit_memory(records, floor, found.heat) : fit_rates(records, floor, found.rates);
 }
 
-[[nodiscard]] inline law_fit fit_thermal(const std::vector<slip_record>& records, double floor) {
+template <class = void>
+[[nodiscard]] law_fit fit_thermal(const std::vector<slip_record>& records, double floor) {
   const auto slipping = detail::slipping_in(records);
   std::size_t samples = 0;
   for (const auto& r : records) samples += r.slips.sample.size();
@@ -272,5 +285,6 @@ template <class Memory>
   if (best_memory < best) return fit_memory(records, floor, found);
   return fit_rates(records, floor, out.rates);
 }
+ROSIN_INSTANTIATE(law_fit fit_thermal(const std::vector<slip_record>&, double))
 
 }  // namespace rosin

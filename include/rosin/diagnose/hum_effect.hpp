@@ -11,6 +11,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 #include <rosin/math/median.hpp>
 
@@ -28,21 +29,22 @@ struct lines_in_rest {
   std::vector<double> parts_N;  ///< re and im of near, of far, line by line: Re(a exp(2 pi i f t)), t from the take's beginning
 };
 
-inline lines_in_rest lines_at(const take_residual& rest, const std::vector<double>& frequencies_Hz) {
+template <class Real = double>
+lines_in_rest lines_at(const take_residual& rest, const std::vector<double>& frequencies_Hz) {
   const auto k = static_cast<Eigen::Index>(2 * frequencies_Hz.size());
   const Eigen::Index n = rest.residual[0].size();
   lines_in_rest out{0, std::vector<double>(2 * static_cast<std::size_t>(k), 0.0)};
   if (n < 4 * k) return out;
-  Eigen::MatrixXd turning(n, k);
+  Eigen::MatrixX<Real> turning(n, k);
   for (Eigen::Index l = 0; l < k / 2; ++l) {
     const double w = 2 * std::numbers::pi * frequencies_Hz[static_cast<std::size_t>(l)];
-    const auto phase = w * (rest.begin_s + Eigen::ArrayXd::LinSpaced(n, 0, static_cast<double>(n - 1)) / rest.rate_Hz);
+    const auto phase = w * (rest.begin_s + Eigen::ArrayX<Real>::LinSpaced(n, 0, static_cast<double>(n - 1)) / rest.rate_Hz);
     turning.col(2 * l) = phase.cos(), turning.col(2 * l + 1) = -phase.sin();
   }
-  const Eigen::LDLT<Eigen::MatrixXd> gram(turning.transpose() * turning);
+  const Eigen::LDLT<Eigen::MatrixX<Real>> gram(turning.transpose() * turning);
   for (std::size_t c = 0; c < 2; ++c) {
-    const Eigen::VectorXd& x = rest.residual[c];
-    const Eigen::VectorXd projected = turning.transpose() * x, amplitude = gram.solve(projected);
+    const Eigen::VectorX<Real>& x = rest.residual[c];
+    const Eigen::VectorX<Real> projected = turning.transpose() * x, amplitude = gram.solve(projected);
     const double before = x.squaredNorm(), after = before - amplitude.dot(projected);
     if (before > 0) out.gain += 0.5 * static_cast<double>(n) * std::log(before / std::max(after, 1e-12 * before));
     for (Eigen::Index i = 0; i < k; ++i) out.parts_N[static_cast<std::size_t>(4 * (i / 2) + i % 2) + 2 * c] = amplitude[i];
@@ -51,7 +53,8 @@ inline lines_in_rest lines_at(const take_residual& rest, const std::vector<doubl
 }
 
 /// Gain of lines that are no hum's over what white noise would give them, in the middle of several such sets: 1 if noise is white.
-inline double lines_elsewhere(const take_residual& rest, const std::vector<double>& frequencies_Hz) {
+template <class = void>
+double lines_elsewhere(const take_residual& rest, const std::vector<double>& frequencies_Hz) {
   std::vector<double> gains;
   for (const double by : {0.63, 0.71, 0.78, 0.84, 1.16, 1.23, 1.29, 1.37, 1.43}) {
     std::vector<double> moved = frequencies_Hz;
@@ -64,7 +67,8 @@ inline double lines_elsewhere(const take_residual& rest, const std::vector<doubl
 }  // namespace detail
 
 /// Parameters of a take, one multiple after the other: re and im of near, of far.
-inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
+template <class = void>
+pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
   constexpr double clear = 0.02, apart = 0.003;  // of the pitch, from a partial
   std::vector<double> multiples{1}, near_partials;
   for (const double m : {2.0, 3.0, 4.0, 5.0, 7.0}) {
@@ -106,5 +110,6 @@ inline pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
   };
   return e;
 }
+ROSIN_INSTANTIATE(pluck_effect hum_effect(const string_facts&, double))
 
 }  // namespace rosin

@@ -12,6 +12,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
 #include <rosin/diagnose/pluck_effects.hpp>
 #include <rosin/diagnose/scene_plucks.hpp>
@@ -53,6 +54,7 @@ namespace detail {
 /// Recordings that a scene gives, all takes and channels in one column, from the release on.
 class planned_recordings {
 public:
+  template <class = void>
   explicit planned_recordings(const planned_plucks& plan) : plan_{plan}, layout_{plan.takes, plan.options, plan.guess.ends} {
     std::vector<double> release, position;
     for (const auto& t : plan.takes) release.push_back(release_s), position.push_back(t.position);
@@ -63,9 +65,10 @@ public:
 
   [[nodiscard]] const pluck_layout& layout() const { return layout_; }
   [[nodiscard]] const Eigen::VectorXd& value() const { return value_; }
+  template <class Real = double>
   [[nodiscard]] Eigen::VectorXd of(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& v) const {
     const scene_plucks model(layout_, plan_.guess.ac_coupled_Hz, effects);
-    Eigen::VectorXd out(rows());
+    Eigen::VectorX<Real> out(rows());
     Eigen::Index at = 0;
     for (std::size_t t = 0; t < plan_.takes.size(); ++t) {
       const double rate = plan_.takes[t].rate_Hz;
@@ -78,10 +81,11 @@ public:
     return out;
   }
   /// By how much an effect of these values changes them.
+  template <class Real = double>
   [[nodiscard]] Eigen::VectorXd change(const pluck_effect& e, const std::vector<double>& values) const {
     if (e.undo) return undone(e, values[0]);
     const Eigen::Index plain = value_.size();
-    Eigen::VectorXd v(plain + static_cast<Eigen::Index>(values.size()));
+    Eigen::VectorX<Real> v(plain + static_cast<Eigen::Index>(values.size()));
     v.head(plain) = value_;
     for (std::size_t q = 0; q < values.size(); ++q)
       v[plain + static_cast<Eigen::Index>(q)] = to_fitted(e.parameters[q], values[q]);
@@ -89,30 +93,32 @@ public:
     return of({e}, v) - plain_;
   }
   /// Orthonormal basis of all that the nuisances can do.
+  template <class Real = double>
   [[nodiscard]] Eigen::MatrixXd nuisances() const {
-    std::vector<Eigen::VectorXd> columns;
+    std::vector<Eigen::VectorX<Real>> columns;
     for (Eigen::Index p = 0; p < layout_.first_of_ends(); ++p) {  // declared ends are taken for true
       if (!layout_.is_free(p)) continue;
-      Eigen::VectorXd up = value_, down = value_;
+      Eigen::VectorX<Real> up = value_, down = value_;
       const double step = layout_.step(p, value_);
       up[p] += step, down[p] -= step;
-      const Eigen::VectorXd d = of({}, up) - of({}, down);
+      const Eigen::VectorX<Real> d = of({}, up) - of({}, down);
       if (const double length = d.norm(); length > 0) columns.push_back(d / length);
     }
-    Eigen::MatrixXd J(rows(), static_cast<Eigen::Index>(columns.size()));
+    Eigen::MatrixX<Real> J(rows(), static_cast<Eigen::Index>(columns.size()));
     for (std::size_t i = 0; i < columns.size(); ++i) J.col(static_cast<Eigen::Index>(i)) = columns[i];
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(J);
+    Eigen::ColPivHouseholderQR<Eigen::MatrixX<Real>> qr(J);
     qr.setThreshold(1e-9);
-    return qr.householderQ() * Eigen::MatrixXd::Identity(rows(), qr.rank());
+    return qr.householderQ() * Eigen::MatrixX<Real>::Identity(rows(), qr.rank());
   }
 
 private:
   static constexpr double release_s = 0.004;
   /// What an effect that works on recordings takes out of them.
+  template <class Real = double>
   [[nodiscard]] Eigen::VectorXd undone(const pluck_effect& e, double value) const {
     std::vector<pluck_take> takes = plan_.takes;
     const pluck_scene scene = scene_plucks(layout_, plan_.guess.ac_coupled_Hz, {}).scene(value_, 0);  // the same for all takes
-    Eigen::VectorXd out(rows());
+    Eigen::VectorX<Real> out(rows());
     Eigen::Index at = 0;
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const auto before = static_cast<Eigen::Index>(std::lround(release_s * takes[t].rate_Hz)), n = samples(t);
@@ -185,22 +191,25 @@ template <class Change>
 
 /// Needs at least one take with rate, strength and position, and a pitch. Effects that no planned pluck shows (hum, which is
 /// there without one) are left out.
-[[nodiscard]] inline isolability isolability_of(const planned_plucks& plan, const std::vector<pluck_effect>& effects) {
+template <class Real = double>
+[[nodiscard]] isolability isolability_of(const planned_plucks& plan, const std::vector<pluck_effect>& effects) {
   const detail::planned_recordings recordings(plan);
-  const Eigen::MatrixXd basis = recordings.nuisances();
-  const auto beyond_nuisances = [&](const Eigen::VectorXd& d) { return Eigen::VectorXd(d - basis * (basis.transpose() * d)); };
+  const Eigen::MatrixX<Real> basis = recordings.nuisances();
+  const auto beyond_nuisances = [&](const Eigen::VectorX<Real>& d) {
+    return Eigen::VectorX<Real>(d - basis * (basis.transpose() * d));
+  };
   isolability out;
   std::vector<double> detectable, surviving;
-  std::vector<Eigen::MatrixXd> seen;  // unit vectors, one column a start
+  std::vector<Eigen::MatrixX<Real>> seen;  // unit vectors, one column a start
   for (const pluck_effect& e : effects) {
     const auto starts = e.undo ? std::vector<std::vector<double>>{{e.parameters[0].step}} : detail::spread_starts(e, 12);
-    Eigen::MatrixXd columns(basis.rows(), static_cast<Eigen::Index>(starts.size()));
+    Eigen::MatrixX<Real> columns(basis.rows(), static_cast<Eigen::Index>(starts.size()));
     double most = 0, share = 0;
     std::size_t best = 0;
     for (std::size_t k = 0; k < starts.size(); ++k) {
-      const Eigen::VectorXd whole = recordings.change(e, starts[k]), left = beyond_nuisances(whole);
+      const Eigen::VectorX<Real> whole = recordings.change(e, starts[k]), left = beyond_nuisances(whole);
       columns.col(static_cast<Eigen::Index>(k)) =
-          left.norm() > 1e-12 ? Eigen::VectorXd(left / left.norm()) : Eigen::VectorXd::Zero(left.size());
+          left.norm() > 1e-12 ? Eigen::VectorX<Real>(left / left.norm()) : Eigen::VectorX<Real>::Zero(left.size());
       if (left.norm() > most) most = left.norm(), best = k, share = most / whole.norm();
     }
     if (!(most > 0)) continue;
@@ -216,14 +225,15 @@ template <class Change>
     seen.push_back(std::move(columns));
   }
   const auto count = static_cast<Eigen::Index>(seen.size());
-  out.detectable = Eigen::Map<Eigen::VectorXd>(detectable.data(), count);
-  out.surviving = Eigen::Map<Eigen::VectorXd>(surviving.data(), count);
-  out.cosine = Eigen::MatrixXd::Identity(count, count);
+  out.detectable = Eigen::Map<Eigen::VectorX<Real>>(detectable.data(), count);
+  out.surviving = Eigen::Map<Eigen::VectorX<Real>>(surviving.data(), count);
+  out.cosine = Eigen::MatrixX<Real>::Identity(count, count);
   for (Eigen::Index i = 0; i < count; ++i)
     for (Eigen::Index j = 0; j < i; ++j)
       out.cosine(i, j) = out.cosine(j, i) =
           (seen[static_cast<std::size_t>(i)].transpose() * seen[static_cast<std::size_t>(j)]).cwiseAbs().maxCoeff();
   return out;
 }
+ROSIN_INSTANTIATE(isolability isolability_of(const planned_plucks&, const std::vector<pluck_effect>&))
 
 }  // namespace rosin

@@ -15,6 +15,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_bristles.hpp>
 #include <rosin/diagnose/contact_slip_effects.hpp>
 
@@ -50,7 +51,8 @@ namespace detail {
 }
 
 /// Bristles with stiffness in common, or in proportion to the normal force where that is likelier: then stated per newton.
-[[nodiscard]] inline law_verdict bristle_verdict(stick_bench& sticks, const std::vector<contact_take>& takes) {
+template <class = void>
+[[nodiscard]] law_verdict bristle_verdict(stick_bench& sticks, const std::vector<contact_take>& takes) {
   law_verdict v{.law = contact_law::elasto_plastic, .needed = std::max(40.0, 0.035 * sticks.independent()), .possible = false};
   if (!sticks.usable()) return v;
   auto alike = bristle_hypothesis(sticks);
@@ -67,7 +69,8 @@ namespace detail {
   return v;
 }
 
-[[nodiscard]] inline law_verdict thermal_verdict(const slip_bench& slips, double needed) {
+template <class = void>
+[[nodiscard]] law_verdict thermal_verdict(const slip_bench& slips, double needed) {
   auto h = law_hypothesis(slips);
   return {contact_law::thermal, h.gain, h.held_out_gain, needed, h.decided, std::move(h.parameters)};
 }
@@ -75,7 +78,8 @@ namespace detail {
 }  // namespace detail
 
 /// Sets the three laws against each other. `model.law` does not matter. Fails where too little slips.
-[[nodiscard]] inline outcome<law_choice> choose_friction_law(const std::vector<contact_take>& takes, contact_model model) {
+template <class = void>
+[[nodiscard]] outcome<law_choice> choose_friction_law(const std::vector<contact_take>& takes, contact_model model) {
   for (const auto& t : takes)
     if (t.rod_speed_m_s == 0 || !(t.normal_force_N > 0))
       return failure{t.name + ": law of friction: the rod's speed and the normal force have to be known"};
@@ -102,5 +106,6 @@ namespace detail {
   out.margin = scores[best] - next;
   return out;
 }
+ROSIN_INSTANTIATE(outcome<law_choice> choose_friction_law(const std::vector<contact_take>&, contact_model))
 
 }  // namespace rosin

@@ -23,6 +23,7 @@
 #pragma once
 
 #include <rosin/condition/held_record.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/string_side.hpp>
 #include <rosin/reconstruct/end_motion.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>
@@ -62,9 +63,10 @@ struct load_echo {
 }
 
 /// Adds the echoes of all loads, and of ends that resist turning, to a motion that was reconstructed without them.
-inline void add_echoes(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N,
-                       const std::array<std::vector<double>, 2>& moved_N, const band& limits, double rate_Hz,
-                       bow_motion<double>& motion) {
+template <class = void>
+void add_echoes(const pluck_scene& scene, const bow_point& at, const std::array<std::vector<double>, 2>& force_N,
+                const std::array<std::vector<double>, 2>& moved_N, const band& limits, double rate_Hz,
+                bow_motion<double>& motion) {
   const auto on_side = loads_by_side(scene.scatterers, at.delay_s);
   held_record record(force_N[0].size(), 8192);
   std::array<std::vector<std::complex<double>>, 4> change;
@@ -106,10 +108,11 @@ inline void add_echoes(const pluck_scene& scene, const bow_point& at, const std:
 
 /// Reconstruction with the loads and the yielding ends of a scene; forces in newtons. Of the ends modes and clamping count,
 /// nothing else. `moved`: moved_ends().
-[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at,
-                                                           const std::array<std::vector<double>, 2>& force_N,
-                                                           const std::array<std::vector<double>, 2>& moved, const band& limits,
-                                                           double rate_Hz) {
+template <class = void>
+[[nodiscard]] bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at,
+                                                    const std::array<std::vector<double>, 2>& force_N,
+                                                    const std::array<std::vector<double>, 2>& moved, const band& limits,
+                                                    double rate_Hz) {
   bow_motion<double> motion;
   if (moved[0].empty() && moved[1].empty()) {
     motion = reconstructor<double>(at, limits, rate_Hz)(force_N[0], force_N[1]);
@@ -123,9 +126,13 @@ inline void add_echoes(const pluck_scene& scene, const bow_point& at, const std:
     detail::add_echoes(scene, at, force_N, moved, limits, rate_Hz, motion);
   return motion;
 }
-[[nodiscard]] inline bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at,
-                                                           const std::array<std::vector<double>, 2>& force_N, const band& limits,
-                                                           double rate_Hz) {
+ROSIN_INSTANTIATE(bow_motion<double> reconstruct_loaded(const pluck_scene&, const bow_point&,
+                                                        const std::array<std::vector<double>, 2>&,
+                                                        const std::array<std::vector<double>, 2>&, const band&, double))
+template <class = void>
+[[nodiscard]] bow_motion<double> reconstruct_loaded(const pluck_scene& scene, const bow_point& at,
+                                                    const std::array<std::vector<double>, 2>& force_N, const band& limits,
+                                                    double rate_Hz) {
   return reconstruct_loaded(scene, at, force_N, moved_ends(scene, force_N, limits, rate_Hz), limits, rate_Hz);
 }
 

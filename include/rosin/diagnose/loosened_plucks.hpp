@@ -7,6 +7,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_exchange.hpp>
 
 namespace rosin {
@@ -38,14 +39,16 @@ inline constexpr double most_places_apart = 2e-3;
 }
 
 /// Values by another layout; what that alone has is 0, but for places, which begin where they were shared.
-[[nodiscard]] inline Eigen::VectorXd carried_over(const pluck_layout& to, const pluck_layout& from, const Eigen::VectorXd& v) {
+template <class Real = double>
+[[nodiscard]] Eigen::VectorXd carried_over(const pluck_layout& to, const pluck_layout& from, const Eigen::VectorXd& v) {
   const auto places = places_in(to, from, v.size());
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(to.size() + v.size() - from.size());
+  Eigen::VectorX<Real> out = Eigen::VectorX<Real>::Zero(to.size() + v.size() - from.size());
   for (Eigen::Index p = 0; p < v.size(); ++p)
     if (places[static_cast<std::size_t>(p)] >= 0) out[places[static_cast<std::size_t>(p)]] = v[p];
   for (std::size_t t = 0; t < from.takes(); ++t) out[to.position(t)] = v[from.position(t)];
   return out;
 }
+ROSIN_INSTANTIATE(Eigen::VectorXd carried_over(const pluck_layout&, const pluck_layout&, const Eigen::VectorXd&))
 
 [[nodiscard]] inline scene_data with_options(scene_data data, const pluck_options& options) {
   data.options = options;
@@ -62,7 +65,8 @@ inline constexpr double most_places_apart = 2e-3;
 }
 
 /// Whether what was freed is as small as it has to be.
-[[nodiscard]] inline bool is_slight(const scene_data& data, const Eigen::VectorXd& v) {
+template <class = void>
+[[nodiscard]] bool is_slight(const scene_data& data, const Eigen::VectorXd& v) {
   const double highest_Hz = data.options.limits_for(data.takes.front().rate_Hz).stop_Hz;
   if (largest_unevenness(data.layout.string(v), highest_Hz) > pluck_layout::uneven_doubt) return false;
   for (std::size_t t = 0; t < data.takes.size() && data.options.own_places; ++t)
@@ -72,9 +76,11 @@ inline constexpr double most_places_apart = 2e-3;
         return false;
   return true;
 }
+ROSIN_INSTANTIATE(bool is_slight(const scene_data&, const Eigen::VectorXd&))
 
 /// The effects that were found, and what is left of them where some are taken out: all of them first, none last.
-[[nodiscard]] inline std::vector<scene_fit> with_fewer(const scene_fit& found) {
+template <class = void>
+[[nodiscard]] std::vector<scene_fit> with_fewer(const scene_fit& found) {
   std::vector<scene_fit> out;
   const std::size_t count = found.effects.size(), sets = std::size_t{1} << std::min<std::size_t>(count, 4);
   for (std::size_t gone = 0; gone < sets; ++gone) {
@@ -93,8 +99,9 @@ struct loosened_fit {
   double parameters = 0;
 };
 
-[[nodiscard]] inline loosened_fit fit_loosened(const scene_data& data, const scene_fit& fewer, double periods, bool uneven,
-                                               bool own, std::array<double, 2> noise) {
+template <class = void>
+[[nodiscard]] loosened_fit fit_loosened(const scene_data& data, const scene_fit& fewer, double periods, bool uneven, bool own,
+                                        std::array<double, 2> noise) {
   pluck_options options = data.options;
   options.uneven_loss = uneven || options.uneven_loss, options.own_places = own || options.own_places;
   loosened_fit out{with_options(data, options), {}, 0};
@@ -106,8 +113,9 @@ struct loosened_fit {
 
 /// Options with what accounts for most of what these effects leave, or for as much as some of them do and more likely. Of what
 /// leaves more than a fiftieth of its first periods without some of its effects nothing else is asked.
-[[nodiscard]] inline std::optional<pluck_options> what_to_loosen(const scene_data& data, const scene_fit& found,
-                                                                 std::array<double, 2> noise) {
+template <class = void>
+[[nodiscard]] std::optional<pluck_options> what_to_loosen(const scene_data& data, const scene_fit& found,
+                                                          std::array<double, 2> noise) {
   constexpr double first_periods = 20;
   if (found.quality.inflation() == 1) return std::nullopt;
   const double was = found.quality.inflation() - 1, periods = found.horizon_periods;
@@ -134,6 +142,7 @@ struct loosened_fit {
   }
   return std::nullopt;
 }
+ROSIN_INSTANTIATE(std::optional<pluck_options> what_to_loosen(const scene_data&, const scene_fit&, std::array<double, 2>))
 
 }  // namespace detail
 

@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/friction_laws.hpp>
 
 namespace rosin {
@@ -38,6 +39,7 @@ inline constexpr double usual_middle = 0.65, usual_doubt = 0.15;
 /// The strokes with levels added, and what laws leave of them: each stroke but the first may still be off by a constant.
 class level_search {
 public:
+  template <class = void>
   explicit level_search(std::vector<slip_record> records)
       : records_{std::move(records)}, sign_(records_.size()), shift_(records_.size(), 0.0) {
     for (std::size_t t = 0; t < records_.size(); ++t) {
@@ -48,33 +50,39 @@ public:
   }
 
   /// Adds to the friction coefficient of a stroke.
+  template <class = void>
   void add(std::size_t t, double mu) {
     auto& r = records_[t];
     for (double& f : r.force_N) f += sign_[t] * mu * r.normal_N;
     r.slips.friction.array() += mu;
     shift_[t] += mu;
   }
+  template <class = void>
   void add_to_all(double mu) {
     for (std::size_t t = 0; t < records_.size(); ++t) add(t, mu);
   }
 
   /// The strokes' loops, on the average, where they usually are.
+  template <class = void>
   void centre() {
     double sum = 0;
     for (std::size_t t = 0; t < records_.size(); ++t) sum += middle(t);
     add_to_all(usual_middle - sum / static_cast<double>(records_.size()));
   }
 
+  template <class Real = double>
   [[nodiscard]] stick_design curve() const {
-    std::vector<Eigen::VectorXd> x;
+    std::vector<Eigen::VectorX<Real>> x;
     for (const auto& r : records_) x.push_back(r.slips.speed_m_s);
     return with_levels(law_design(records_, x, stride()));
   }
+  template <class = void>
   [[nodiscard]] stick_design heated(const contact_heat_parameters<double>& heat) const {
     return with_levels(memory_design(
         records_, [&](std::size_t t) { return heat_along(records_[t], heat); }, stride()));
   }
   /// Sets the strokes against the first as a fit finds them.
+  template <class = void>
   void settle(const design_fit& fit) {
     for (std::size_t t = 1; t < records_.size(); ++t) add(t, -fit.solution.own[t][0]);
   }
@@ -99,6 +107,7 @@ private:
     for (const auto& r : records_) samples += r.slips.sample.size();
     return std::max<std::size_t>(2, samples / 3000);
   }
+  template <class = void>
   [[nodiscard]] static stick_design with_levels(stick_design d) {
     free_levels(d);
     return d;
@@ -115,6 +124,7 @@ struct heat_objective {
   double independent = 1, floor = 0.003;
   double usual = 0;  ///< what would have to be added to lie in the middle of the usual range
 
+  template <class = void>
   [[nodiscard]] double operator()(const Eigen::Vector3d& at) const {
     if (!(std::abs(at[0] - std::log(2e-6)) < 4 && std::abs(at[1] - std::log(1e-7)) < 3 &&
           std::abs(at[2] - usual) < 4 * usual_doubt))
@@ -128,8 +138,8 @@ struct heat_objective {
 };
 
 /// Pattern search, the steps halved as soon as none helps.
-[[nodiscard]] inline Eigen::Vector3d descend(const heat_objective& objective, Eigen::Vector3d at, Eigen::Vector3d step,
-                                             int halvings) {
+template <class = void>
+[[nodiscard]] Eigen::Vector3d descend(const heat_objective& objective, Eigen::Vector3d at, Eigen::Vector3d step, int halvings) {
   double best = objective(at);
   for (int left = halvings; left > 0;) {
     const Eigen::Vector3d from = at;
@@ -149,9 +159,11 @@ struct heat_objective {
   }
   return at;
 }
+ROSIN_INSTANTIATE(Eigen::Vector3d descend(const heat_objective&, Eigen::Vector3d, Eigen::Vector3d, int))
 
 /// Coarsely over all three, the two best of them a little on their way: there is more than one valley.
-[[nodiscard]] inline Eigen::Vector3d best_start(const heat_objective& objective) {
+template <class = void>
+[[nodiscard]] Eigen::Vector3d best_start(const heat_objective& objective) {
   std::vector<std::pair<double, Eigen::Vector3d>> tried;
   for (const double layer : {6e-7, 4e-6})
     for (const double area : {0.6e-7, 1.4e-7})
@@ -166,7 +178,8 @@ struct heat_objective {
 }
 
 /// From the inverse of the second derivatives, never more than the prior's width.
-[[nodiscard]] inline double sd_of_common(const heat_objective& objective, const Eigen::Vector3d& at) {
+template <class = void>
+[[nodiscard]] double sd_of_common(const heat_objective& objective, const Eigen::Vector3d& at) {
   const Eigen::Vector3d step(0.25, 0.1, 0.04);
   const double here = objective(at);
   Eigen::Matrix3d h;
@@ -192,8 +205,9 @@ struct heat_objective {
 /// leaves much more is not that of the contact to the point, and what it says of zero is worse than the usual range: then that is
 /// used. One stroke alone bends layer and area to what it needs: 19 strokes of 8 random rigs were off by -0.08 on the average,
 /// 0.09 rms. Its error is taken as 2.5 times as large.
-[[nodiscard]] inline lost_levels find_lost_levels(const std::vector<slip_record>& records, double floor = 0.003,
-                                                  double law_error = 0.04) {
+template <class = void>
+[[nodiscard]] lost_levels find_lost_levels(const std::vector<slip_record>& records, double floor = 0.003,
+                                           double law_error = 0.04) {
   detail::level_search search(records);
   for (int pass = 0; pass < 2; ++pass) search.settle(fit_design(search.curve(), floor));
   search.centre();
@@ -225,5 +239,6 @@ struct heat_objective {
   for (std::size_t t = 0; t < records.size(); ++t) out.takes.push_back(search.of(t, out.common_sd));
   return out;
 }
+ROSIN_INSTANTIATE(lost_levels find_lost_levels(const std::vector<slip_record>&, double, double))
 
 }  // namespace rosin

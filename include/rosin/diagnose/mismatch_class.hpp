@@ -13,6 +13,7 @@
 #pragma once
 
 #include <rosin/calibrate/calibration.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/corrected_take.hpp>
 #include <rosin/diagnose/loaded_motion.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
@@ -61,12 +62,13 @@ namespace detail {
 }
 
 /// The step of the best height and level; without a sample before it, the level alone.
-inline void fit_step(plucking_force& p, std::size_t before) {
+template <class Real = double>
+void fit_step(plucking_force& p, std::size_t before) {
   const auto n = static_cast<Eigen::Index>(p.step_N.size());
-  const Eigen::VectorXd mean =
-      0.5 * (Eigen::Map<Eigen::VectorXd>(p.near_N.data(), n) + Eigen::Map<Eigen::VectorXd>(p.far_N.data(), n));
-  Eigen::Map<Eigen::VectorXd> step(p.step_N.data(), n);
-  Eigen::MatrixXd basis(n, before > 0 ? 2 : 1);
+  const Eigen::VectorX<Real> mean =
+      0.5 * (Eigen::Map<Eigen::VectorX<Real>>(p.near_N.data(), n) + Eigen::Map<Eigen::VectorX<Real>>(p.far_N.data(), n));
+  Eigen::Map<Eigen::VectorX<Real>> step(p.step_N.data(), n);
+  Eigen::MatrixX<Real> basis(n, before > 0 ? 2 : 1);
   basis.col(0).setOnes();
   if (before > 0) basis.col(1) = step;
   step = basis * (basis.transpose() * basis).ldlt().solve(basis.transpose() * mean);
@@ -77,9 +79,10 @@ inline void fit_step(plucking_force& p, std::size_t before) {
 
 /// Of one of the takes that were fitted. `fit`: of the declared model (scene_data); `noise_N`: of the recorded channels, as the best
 /// model has it. Nothing where the take is too short.
-[[nodiscard]] inline std::optional<plucking_force> plucking_force_of(const scene_data& data, const pluck_fit_result& declared,
-                                                                     const scene_fit& fit, std::size_t take,
-                                                                     const std::array<double, 2>& noise_N) {
+template <class = void>
+[[nodiscard]] std::optional<plucking_force> plucking_force_of(const scene_data& data, const pluck_fit_result& declared,
+                                                              const scene_fit& fit, std::size_t take,
+                                                              const std::array<double, 2>& noise_N) {
   constexpr double most_periods = 8;
   const pluck_take& recorded = data.takes[take];
   const double rate = recorded.rate_Hz, release_s = fit.value[data.layout.at(take, pluck_layout::release)],
@@ -115,5 +118,7 @@ inline void fit_step(plucking_force& p, std::size_t before) {
   out.shape_noise_N = detail::noise_through(kernels, {0.5, 0.5, 0, 0}, noise);
   return out;
 }
+ROSIN_INSTANTIATE(std::optional<plucking_force> plucking_force_of(const scene_data&, const pluck_fit_result&, const scene_fit&,
+                                                                  std::size_t, const std::array<double, 2>&))
 
 }  // namespace rosin

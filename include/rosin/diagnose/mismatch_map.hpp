@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/math/fft.hpp>
 #include <rosin/propagate/band.hpp>
 
@@ -81,6 +82,7 @@ namespace detail {
 /// A series, zeros behind it, in one octave after the other.
 class octave_filter {
 public:
+  template <class = void>
   octave_filter(const Eigen::VectorXd& x, double rate_Hz) : rate_Hz_{rate_Hz}, fft_{2 * static_cast<std::size_t>(x.size())} {
     std::vector<double> padded(fft_.size(), 0.0);
     std::copy(x.begin(), x.end(), padded.begin());
@@ -88,6 +90,7 @@ public:
     fft_.forward(padded.data(), bins_.data());
   }
   /// `share`: of the power of white noise that `limits` lets through here.
+  template <class = void>
   [[nodiscard]] std::vector<double> between(double low_Hz, double high_Hz, const band& limits, double& share) {
     std::vector<std::complex<double>> some(bins_.size());
     share = 0;
@@ -111,12 +114,13 @@ private:
 }  // namespace detail
 
 /// `residual_N`: from `begin_s` on, of both channels, seen through `limits`; `noise_N`: of a sample before that, white.
-[[nodiscard]] inline mismatch_map map_of(const std::array<Eigen::VectorXd, 2>& residual_N, double begin_s, double rate_Hz,
-                                         const std::array<echo_times, 2>& when, const band& limits,
-                                         const std::array<double, 2>& noise_N) {
+template <class Real = double>
+[[nodiscard]] mismatch_map map_of(const std::array<Eigen::VectorXd, 2>& residual_N, double begin_s, double rate_Hz,
+                                  const std::array<echo_times, 2>& when, const band& limits,
+                                  const std::array<double, 2>& noise_N) {
   mismatch_map out{detail::octaves(1 / when[0].period_s, limits.pass_Hz), {}};
   for (std::size_t c = 0; c < 2; ++c) {
-    const Eigen::VectorXd& r = residual_N[c];
+    const Eigen::VectorX<Real>& r = residual_N[c];
     if (r.size() < 2) continue;
     auto& channel = out.channels[c] = detail::rows_of(when[c], begin_s, begin_s + static_cast<double>(r.size()) / rate_Hz);
     channel.over_noise.resize(static_cast<Eigen::Index>(channel.echo.size()), static_cast<Eigen::Index>(out.band_Hz.size() - 1));
@@ -139,5 +143,7 @@ private:
   }
   return out;
 }
+ROSIN_INSTANTIATE(mismatch_map map_of(const std::array<Eigen::VectorXd, 2>&, double, double, const std::array<echo_times, 2>&,
+                                      const band&, const std::array<double, 2>&))
 
 }  // namespace rosin

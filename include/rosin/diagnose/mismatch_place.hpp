@@ -17,6 +17,7 @@
 #pragma once
 
 #include <rosin/calibrate/damped_spectrum.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 
 #include <optional>
@@ -51,12 +52,13 @@ struct unexplained_part {
 namespace detail {
 
 /// What a fit leaves of the ringing part of a take, and how it moves with every parameter that is free there.
-inline unexplained_part left_by(const line_problem<scene_plucks>& problem, const Eigen::VectorXd& v, std::size_t take) {
+template <class Real = double>
+unexplained_part left_by(const line_problem<scene_plucks>& problem, const Eigen::VectorXd& v, std::size_t take) {
   unexplained_part out{residual_of(problem, v, take), {}, problem.rate_Hz(take), {}, {}};
   for (Eigen::Index p = 0; p < problem.model().size(); ++p) {
     if (!problem.model().is_free(p) || !problem.model().concerns(p, take)) continue;
     const double h = problem.model().step(p, v);
-    Eigen::VectorXd up = v;
+    Eigen::VectorX<Real> up = v;
     up[p] += h;
     auto moved = residual_of(problem, up, take);
     for (std::size_t c = 0; c < 2; ++c) moved[c] = (moved[c] - out.force_N[c]) / h;
@@ -65,6 +67,7 @@ inline unexplained_part left_by(const line_problem<scene_plucks>& problem, const
   }
   return out;
 }
+ROSIN_INSTANTIATE(unexplained_part left_by(const line_problem<scene_plucks>&, const Eigen::VectorXd&, std::size_t))
 
 /// What the channels make of forces on the ends: sensors, crosstalk, gains.
 [[nodiscard]] inline Eigen::Vector2cd recorded_of(const pluck_scene& scene, const std::array<double, 2>& gain,
@@ -78,6 +81,7 @@ inline unexplained_part left_by(const line_problem<scene_plucks>& problem, const
 class place_search {
 public:
   /// gain: recorded / true of each channel; noise: white, of each channel.
+  template <class = void>
   place_search(const pluck_scene& scene, std::array<double, 2> gain, const band& limits, const unexplained_part& left,
                std::array<double, 2> noise)
       : scene_{scene}, gain_{gain}, sure_{1 / noise[0], 1 / noise[1]}, line_{line_over(
@@ -98,6 +102,7 @@ public:
   }
 
   /// The place that leaves least.
+  template <class = void>
   [[nodiscard]] acting_place operator()() const {
     std::vector<acting_place> all{on_string()};
     for (const acting on : {acting::near_end, acting::far_end, acting::near_channel, acting::far_channel})
@@ -107,6 +112,7 @@ public:
     return all[0];
   }
   /// The same of places on the string, between two of them.
+  template <class = void>
   [[nodiscard]] acting_place on_string(double from = 0, double to = 1) const {
     constexpr int grid = 64;
     const int first = 1 + static_cast<int>(from * grid), last = static_cast<int>(to * grid) - 1;
@@ -119,15 +125,18 @@ public:
   }
 
   /// How much of each nuisance is in what is left, the action at that place taken out.
+  template <class = void>
   [[nodiscard]] Eigen::VectorXd nuisances(const acting_place& at) const {
     const auto [left, moved] = parts_across(at.on, at.position);
     return fitted(left, moved);
   }
   /// Power across the shares of a place, nuisances as they are and as far as they are from what is known of them, over noise.
+  template <class = void>
   [[nodiscard]] double misfit(const acting_place& at) const {
     return parts_across(at.on, at.position).first.squaredNorm() / noise_power_;
   }
   /// Their covariance, noise being all that lies across.
+  template <class = void>
   [[nodiscard]] Eigen::MatrixXd covariance(const acting_place& at) const {
     return row_variance() * inverse_normal(parts_across(at.on, at.position).second);
   }
@@ -135,6 +144,7 @@ public:
   [[nodiscard]] bool is_mismatch() const { return 2 * noise_power_ < most_noise * power_; }
   /// No other kind of place does nearly as well, and it accounts for nearly all that the nuisances by themselves do not, which
   /// is no small part of the mismatch: where they could take up most of it, the fit was led astray, and so is the place.
+  template <class = void>
   [[nodiscard]] bool is_clear(const acting_place& at) const {
     const double beside = power_beside_nuisances();
     return beside > least_beside * power_ && at.left < clearly_less * at.left_elsewhere &&
@@ -154,6 +164,7 @@ private:
   static constexpr std::size_t most_bins = 2000;
   using spectrum_pair = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 2>;
 
+  template <class = void>
   [[nodiscard]] spectrum_pair spectra(const std::array<Eigen::VectorXd, 2>& x) const {
     spectrum_pair out(static_cast<Eigen::Index>(bins_.size()), 2);
     for (std::size_t c = 0; c < 2; ++c) {
@@ -165,6 +176,7 @@ private:
   }
 
   /// Shares of both channels, whitened.
+  template <class = void>
   [[nodiscard]] Eigen::Vector2cd shares(acting on, double x, std::size_t i) const {
     if (on == acting::near_channel) return {1, 0};
     if (on == acting::far_channel) return {0, 1};
@@ -183,11 +195,12 @@ private:
 
   /// What lies across the shares of a place: of the mismatch, and of each nuisance (a column each); real parts, then imaginary
   /// ones, then what is known of the nuisances.
+  template <class Real = double>
   [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::MatrixXd> parts_across(acting on, double x) const {
     const auto rows = static_cast<Eigen::Index>(bins_.size()), columns = static_cast<Eigen::Index>(nuisances_.size());
     const auto known = static_cast<Eigen::Index>(doubts_.size());
-    std::pair<Eigen::VectorXd, Eigen::MatrixXd> out{Eigen::VectorXd::Zero(2 * rows + known),
-                                                    Eigen::MatrixXd::Zero(2 * rows + known, columns)};
+    std::pair<Eigen::VectorX<Real>, Eigen::MatrixX<Real>> out{Eigen::VectorX<Real>::Zero(2 * rows + known),
+                                                              Eigen::MatrixX<Real>::Zero(2 * rows + known, columns)};
     for (Eigen::Index i = 0; i < rows; ++i) {
       const Eigen::Vector2cd n = shares(on, x, static_cast<std::size_t>(i)).normalized();
       const auto part = [&](const spectrum_pair& r) { return n[1] * r(i, 0) - n[0] * r(i, 1); };
@@ -201,36 +214,41 @@ private:
     return out;
   }
   /// (J^T J)^-1, what no column tells left small; zero for a column that is (of one channel's gain, across the other).
+  template <class Real = double>
   [[nodiscard]] static Eigen::MatrixXd inverse_normal(const Eigen::MatrixXd& moved) {
-    const Eigen::VectorXd scale = moved.colwise().norm().unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0; });
-    const Eigen::MatrixXd unit = moved * scale.asDiagonal();
-    Eigen::MatrixXd normal = unit.transpose() * unit;
+    const Eigen::VectorX<Real> scale = moved.colwise().norm().unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0; });
+    const Eigen::MatrixX<Real> unit = moved * scale.asDiagonal();
+    Eigen::MatrixX<Real> normal = unit.transpose() * unit;
     normal.diagonal().array() += 1e-10;
-    return scale.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd(scale.asDiagonal()));
+    return scale.asDiagonal() * normal.ldlt().solve(Eigen::MatrixX<Real>(scale.asDiagonal()));
   }
   /// Least squares of the first by the second.
+  template <class = void>
   [[nodiscard]] static Eigen::VectorXd fitted(const Eigen::VectorXd& left, const Eigen::MatrixXd& moved) {
     return inverse_normal(moved) * (moved.transpose() * left);
   }
   /// Power of both channels, with the nuisances' part taken out.
+  template <class Real = double>
   [[nodiscard]] double power_beside_nuisances() const {
     const auto parts = [](const spectrum_pair& r) {
-      Eigen::VectorXd out(4 * r.rows());
+      Eigen::VectorX<Real> out(4 * r.rows());
       out << r.col(0).real(), r.col(0).imag(), r.col(1).real(), r.col(1).imag();
       return out;
     };
-    const Eigen::VectorXd left = parts(residual_);
-    Eigen::MatrixXd moved(left.size(), static_cast<Eigen::Index>(nuisances_.size()));
+    const Eigen::VectorX<Real> left = parts(residual_);
+    Eigen::MatrixX<Real> moved(left.size(), static_cast<Eigen::Index>(nuisances_.size()));
     for (std::size_t k = 0; k < nuisances_.size(); ++k) moved.col(static_cast<Eigen::Index>(k)) = parts(nuisances_[k]);
     return nuisances_.empty() ? left.squaredNorm() : (left - moved * fitted(left, moved)).squaredNorm();
   }
   /// Power across the shares of a place, with the nuisances' part taken out.
+  template <class = void>
   [[nodiscard]] double across(acting on, double x) const {
     const auto [left, moved] = parts_across(on, x);
     return moved.cols() > 0 ? (left - moved * fitted(left, moved)).squaredNorm() : left.squaredNorm();
   }
 
   /// By golden sections; the standard deviation from the curvature, misfit counted as noise.
+  template <class = void>
   [[nodiscard]] acting_place refined(double low, double high) const {
     const double ratio = (std::sqrt(5.0) - 1) / 2;
     double a = high - ratio * (high - low), b = low + ratio * (high - low);
@@ -266,8 +284,8 @@ private:
 
 /// Where what a fit leaves of one of its takes acts, over the first periods; nothing where that is mostly noise, or no single place
 /// explains nearly all of it, or one of another kind does nearly as well.
-[[nodiscard]] inline std::optional<acting_place> place_of_residual(const scene_data& data, const scene_fit& fit,
-                                                                   std::size_t take) {
+template <class = void>
+[[nodiscard]] std::optional<acting_place> place_of_residual(const scene_data& data, const scene_fit& fit, std::size_t take) {
   constexpr double most_periods = 24, least_periods = 2;
   const auto problem = data.problem(
       fit.effects, fit.value,
@@ -282,5 +300,6 @@ private:
   const acting_place found = where_plucked(search(), fit.value[data.layout.position(take)]);
   return search.is_clear(found) ? std::optional(found) : std::nullopt;
 }
+ROSIN_INSTANTIATE(std::optional<acting_place> place_of_residual(const scene_data&, const scene_fit&, std::size_t))
 
 }  // namespace rosin

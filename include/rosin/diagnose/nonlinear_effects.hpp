@@ -10,6 +10,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 #include <rosin/diagnose/sensor_chain.hpp>
 #include <rosin/diagnose/stretching_pluck.hpp>
@@ -70,7 +71,8 @@ namespace detail {
 }  // namespace detail
 
 /// output = f + a f^2 in one channel. What comes behind that a f^2 passes, too.
-inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel, bending where = bending::behind_ringing) {
+template <class Real = double>
+pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel, bending where = bending::behind_ringing) {
   pluck_effect e{.name = "sensor-nonlinearity",
                  .place = channel,
                  .parameters = {by_score_steps("quadratic_per_N", -0.6, 0.6, 1e-4)},
@@ -79,7 +81,7 @@ inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel,
   if (where == bending::before_ringing)
     e.variant = "before it rings", e.beside = channel == 0 ? "sensor-resonance@near" : "sensor-resonance@far";
   e.undo = [channel, where](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout&,
-                            const Eigen::VectorXd& v, double a) {
+                            const Eigen::VectorX<Real>& v, double a) {
     const auto own = static_cast<std::size_t>(channel);
     const std::array<double, 2> gain{pluck_layout::gain(v, 0), pluck_layout::gain(v, 1)};
     const pluck_scene behind = detail::behind_the_bend(scene, own, where);
@@ -94,24 +96,26 @@ inline pluck_effect sensor_nonlinearity_effect(const string_facts&, int channel,
   };
   return e;
 }
+ROSIN_INSTANTIATE(pluck_effect sensor_nonlinearity_effect(const string_facts&, int, bending))
 
 /// Large motion stretches the string. Needs the tension in newtons. The string that rings in the mean is part of the scene; what
 /// is taken out is by how much the stretched one differs from it.
-inline pluck_effect tension_modulation_effect(const string_facts& f, const band& limits) {
+template <class Real = double>
+pluck_effect tension_modulation_effect(const string_facts& f, const band& limits) {
   pluck_effect e{
       .name = "tension-modulation", .parameters = {{"axial_stiffness_N", 0, 3e6, 20}}, .starts = {{0}}, .strength = -3};
   constexpr double most_periods = 10;
   e.horizon_periods = most_periods;
   const double tension = f.impedance_Ns_m * 2 * f.length_m * f.fundamental_Hz, horizon_s = most_periods / f.fundamental_Hz;
-  const auto raised = [=](const pluck_layout& layout, const Eigen::VectorXd& v, std::size_t t, double axial_N) {
+  const auto raised = [=](const pluck_layout& layout, const Eigen::VectorX<Real>& v, std::size_t t, double axial_N) {
     return mean_stretch(layout.string(v), v[layout.position(t)], std::exp(v[layout.at(t, pluck_layout::strength)]) / tension,
                         axial_N / (4 * tension), 0.6 * most_periods);
   };
-  e.retune = [=](pluck_scene& s, const pluck_layout& layout, const Eigen::VectorXd& v, std::size_t t, double axial_N) {
+  e.retune = [=](pluck_scene& s, const pluck_layout& layout, const Eigen::VectorX<Real>& v, std::size_t t, double axial_N) {
     s.string = tightened(s.string, raised(layout, v, t, axial_N));
   };
-  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout, const Eigen::VectorXd& v,
-               double axial_N) {
+  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout,
+               const Eigen::VectorX<Real>& v, double axial_N) {
     const ringing_string slack = relaxed(scene.string, raised(layout, v, 0, axial_N));  // as other effects make it, at rest
     const nearest_pinned pinned(scene, slack);
     std::vector<string_load> loads;
@@ -156,18 +160,20 @@ inline pluck_effect tension_modulation_effect(const string_facts& f, const band&
   };
   return e;
 }
+ROSIN_INSTANTIATE(pluck_effect tension_modulation_effect(const string_facts&, const band&))
 
 /// A channel that feels the tension, too: what it reads per unit of strain. The tension is the same all along the string: the
 /// partials are below its longitudinal modes.
-inline pluck_effect phantom_partials_effect(const string_facts& f, const band& limits, int channel) {
+template <class Real = double>
+pluck_effect phantom_partials_effect(const string_facts& f, const band& limits, int channel) {
   const double tension = f.impedance_Ns_m * 2 * f.length_m * f.fundamental_Hz;
   pluck_effect e{.name = "phantom-partials",
                  .place = channel,
                  .parameters = {by_score_steps("sensed_axial_stiffness_N", -3e6, 3e6, 1e-3 * tension)},
                  .starts = {{0}},
                  .strength = -3};
-  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout, const Eigen::VectorXd& v,
-               double sensed_N) {
+  e.undo = [=](std::vector<pluck_take>& takes, const pluck_scene& scene, const pluck_layout& layout,
+               const Eigen::VectorX<Real>& v, double sensed_N) {
     for (std::size_t t = 0; t < takes.size(); ++t) {
       const std::size_t size = takes[t].force_N[0].size();
       const double rate = takes[t].rate_Hz, released = v[layout.at(t, pluck_layout::release)] * rate,
@@ -189,5 +195,6 @@ inline pluck_effect phantom_partials_effect(const string_facts& f, const band& l
   };
   return e;
 }
+ROSIN_INSTANTIATE(pluck_effect phantom_partials_effect(const string_facts&, const band&, int))
 
 }  // namespace rosin

@@ -9,6 +9,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 
 namespace rosin {
@@ -64,7 +65,8 @@ namespace detail {
 inline constexpr double clearly_off = 3;
 
 /// By release and strength of the first periods: what comes later is not to bend them.
-inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& take, double first_periods = 5) {
+template <class = void>
+take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& take, double first_periods = 5) {
   auto seen = see(d.data, d.best, take, first_periods);
   if (!seen) return {};
   seen->stage.periods = d.best.horizon_periods;
@@ -74,6 +76,7 @@ inline take_and_model compare_late(const pluck_diagnosis& d, const pluck_take& t
   for (std::size_t c = 0; c < 2; ++c) out.model[c] = out.recorded[c] - left[c];
   return out;
 }
+ROSIN_INSTANTIATE(take_and_model compare_late(const pluck_diagnosis&, const pluck_take&, double))
 
 /// What a lost piece leaves: samples before `from` against the model, those a gap behind it against the model `lag` later.
 struct loss_search {
@@ -104,7 +107,8 @@ inline loss_search find_loss(const take_and_model& t, std::size_t most_lag, std:
 }
 
 /// A whole number of samples that is missing from some instant on, where that accounts for nearly all.
-inline void search_loss(odd_pluck& odd, const take_and_model& t) {
+template <class = void>
+void search_loss(odd_pluck& odd, const take_and_model& t) {
   constexpr std::size_t most_lag = 1024, gap = 80;  // a band's filter blurs the gap
   if (t.recorded[0].size() < static_cast<Eigen::Index>(8 * gap)) return;
   const loss_search found = find_loss(t, most_lag, gap);
@@ -120,7 +124,8 @@ inline void search_loss(odd_pluck& odd, const take_and_model& t) {
 
 /// Another place from which the model of the others predicts the pluck. What a wrong place leaves of the first periods falls
 /// steadily towards the right one; there, of the whole take, it is a parabola.
-inline void search_place(odd_pluck& odd) {
+template <class = void>
+void search_place(odd_pluck& odd) {
   constexpr double ends = 0.02, step = 0.06, near = 1e-3, few_periods = 3;
   const auto from = [&](double position) {
     auto take = odd.take;
@@ -159,7 +164,8 @@ inline void search_place(odd_pluck& odd) {
 }
 
 /// The first half period in which a take is off by a tenth (in amplitude) of the most.
-inline std::array<double, 2> first_off(const take_and_model& t, double fundamental_Hz) {
+template <class = void>
+std::array<double, 2> first_off(const take_and_model& t, double fundamental_Hz) {
   const auto window = static_cast<Eigen::Index>(std::max(8.0, 0.5 * t.rate_Hz / fundamental_Hz));
   std::vector<double> power;
   for (Eigen::Index i = 0; i + window <= t.recorded[0].size(); i += window) {
@@ -175,8 +181,9 @@ inline std::array<double, 2> first_off(const take_and_model& t, double fundament
 }
 
 /// Against plucks that are explained by themselves; nothing if they foretell it.
-inline std::optional<odd_pluck> against(pluck_diagnosis others, const pluck_take& take, const pluck_guess& guess,
-                                        const pluck_options& options) {
+template <class = void>
+std::optional<odd_pluck> against(pluck_diagnosis others, const pluck_take& take, const pluck_guess& guess,
+                                 const pluck_options& options) {
   odd_pluck odd{.take = take, .others = std::move(others), .strongest = true};
   const auto seen = predicted(odd.others.data, odd.others.best, take, rms_of(odd.others.best.quality.noise));
   odd.before = seen[0], odd.floor = seen[1];
@@ -210,7 +217,8 @@ inline double worst_of(const outcome<pluck_fit_result>& fit) { return fit && fit
 }  // namespace detail
 
 /// The odd one of at least three plucks (fitted and held out), if there is one.
-[[nodiscard]] inline std::optional<odd_pluck> find_odd_pluck(
+template <class = void>
+[[nodiscard]] std::optional<odd_pluck> find_odd_pluck(
     const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
     const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for) {
   constexpr double far_better = 0.3;
@@ -243,5 +251,8 @@ inline double worst_of(const outcome<pluck_fit_result>& fit) { return fit && fit
   if (!odd->lost) detail::search_place(*odd);
   return odd;
 }
+ROSIN_INSTANTIATE(std::optional<odd_pluck> find_odd_pluck(
+    const std::vector<pluck_take>&, const std::vector<pluck_take>&, const pluck_guess&, const pluck_options&,
+    const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>&))
 
 }  // namespace rosin

@@ -10,6 +10,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_law_fit.hpp>
 
 namespace rosin {
@@ -86,11 +87,12 @@ inline std::vector<pickup_law> support_places(double low_Hz, double high_Hz) {
 namespace detail {
 
 /// The law with as much of an effect at each of its places as the score there calls for, the best gain first.
-inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_table& table, const fitted_law& base,
-                                                                   const law_effect& e) {
+template <class Real = double>
+std::vector<std::pair<double, pickup_law>> likeliest_places(const line_table& table, const fitted_law& base,
+                                                            const law_effect& e) {
   std::vector<std::pair<double, pickup_law>> starts;
   const law_problem problem(table, base.parameters, base.in_proportion);
-  const Eigen::VectorXd plain = problem.predicted(base.law);
+  const Eigen::VectorX<Real> plain = problem.predicted(base.law);
   const auto score = problem.score_at(base.law);
   for (const auto& place : e.places) {
     pickup_law at = base.law;
@@ -109,7 +111,8 @@ inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_ta
 
 /// The law with one effect more, from the three likeliest places on. What a load makes of the string's loss is a matter of
 /// convention: both are tried.
-[[nodiscard]] inline fitted_law with_effect(const line_table& table, const fitted_law& base, const law_effect& e) {
+template <class Real = double>
+[[nodiscard]] fitted_law with_effect(const line_table& table, const fitted_law& base, const law_effect& e) {
   const auto starts = detail::likeliest_places(table, base, e);
   std::vector<law_parameter> parameters = base.parameters;
   parameters.insert(parameters.end(), e.parameters.begin(), e.parameters.end());
@@ -127,10 +130,11 @@ inline std::vector<std::pair<double, pickup_law>> likeliest_places(const line_ta
       }
   if (std::isfinite(best.log_likelihood)) return fit_law(table, parameters, best.law);
   best.parameters = parameters, best.log_likelihood = base.log_likelihood;  // nothing of it anywhere
-  best.sd = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters.size()));
+  best.sd = Eigen::VectorX<Real>::Zero(static_cast<Eigen::Index>(parameters.size()));
   best.sd.head(base.sd.size()) = base.sd;
   return best;
 }
+ROSIN_INSTANTIATE(fitted_law with_effect(const line_table&, const fitted_law&, const law_effect&))
 
 /// ln L less what so many free numbers gain by chance; small tables pay more.
 [[nodiscard]] inline double evidence_of(const fitted_law& f, std::size_t lines) {

@@ -72,6 +72,7 @@ class pickup_namer {
 public:
   pickup_namer(pickup_diagnosis& d, const pickup_question& ask) : d_{d}, ask_{ask} {}
 
+  template <class = void>
   void name_all() {
     if (d_.structure.glides && ask_.asks_for("tension-modulation")) {
       double rise = 0;
@@ -100,6 +101,7 @@ private:
       if (glide ? !h.glides : !h.paired && !h.doubled) best = std::max(best, h.evidence);
     return d_.structure.evidence - best;
   }
+  template <class Real = double>
   [[nodiscard]] pickup_finding polarization() const {
     if (d_.structure.paired)
       return {"second-polarization",
@@ -111,7 +113,8 @@ private:
     for (const auto& l : d_.table.lines)
       if (l.split_Hz != 0) relative.push_back(l.split_Hz / l.frequency_Hz);
     if (relative.empty()) return {"second-polarization", {}, worth_of(false), {}};
-    const Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(relative.data(), static_cast<Eigen::Index>(relative.size()));
+    const Eigen::VectorX<Real> v =
+        Eigen::Map<const Eigen::VectorX<Real>>(relative.data(), static_cast<Eigen::Index>(relative.size()));
     const double middle = median_of(v), scatter = 1.48 * median_of((v.array() - middle).abs());
     return {"second-polarization",
             {{"detuning", middle, scatter / std::sqrt(static_cast<double>(v.size()))}, {"detuning_scatter", scatter, 0}},

@@ -12,6 +12,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_pair.hpp>
 
 #include <complex>
@@ -47,8 +48,9 @@ struct glide_shape {
 [[nodiscard]] inline glide_shape shape_by_rate(double rate_per_s) { return {{1}, {rate_per_s}, {0}}; }
 
 /// The track with a glide of that strength taken out: one line is fitted anew.
-[[nodiscard]] inline partial_track without_glide(const partial_track& t, const std::vector<double>& path_s, double relative,
-                                                 double tolerance_Hz) {
+template <class = void>
+[[nodiscard]] partial_track without_glide(const partial_track& t, const std::vector<double>& path_s, double relative,
+                                          double tolerance_Hz) {
   partial_track out = t;
   const double turn = -detail::full_turn * t.fit.model.centre_Hz * relative;
   for (std::size_t j = 0; j < out.samples.size(); ++j) out.samples[j] *= std::polar(1.0, turn * path_s[j]);
@@ -74,6 +76,7 @@ namespace detail {
 /// Strength of a glide by likelihood in the clearest partials, each of them one line or a pair of a known distance.
 class glide_search {
 public:
+  template <class = void>
   glide_search(const pickup_ringing& r, const glide_shape& shape, double detuning)
       : r_{r}, shape_{shape}, detuning_{detuning}, which_{clearest(r, 24)} {
     for (const std::size_t i : which_) {
@@ -82,12 +85,14 @@ public:
     }
   }
   /// By how much ln L rises.
+  template <class = void>
   [[nodiscard]] double operator()(double relative) const {
     double sum = 0;
     for (std::size_t k = 0; k < which_.size(); ++k) sum += value(k, relative) - plain_[k];
     return sum;
   }
   /// From `about` on, or anywhere.
+  template <class = void>
   [[nodiscard]] glide_found best(double about = 0) const {
     likelihood_peak top{about, about > 0 ? (*this)(about) : 0};
     if (!(about > 0))
@@ -97,11 +102,13 @@ public:
   }
 
 private:
+  template <class = void>
   [[nodiscard]] double value(std::size_t k, double relative) const {
     const partial_track& t = r_.tracks[which_[k]];
     const partial_track still = without_glide(t, path_[k], relative, 1.5 * r_.tolerance_Hz);
     return log_likelihood(t, detuning_ == 0 ? still.fit.residual : fit_pair(still, detuning_).residual);
   }
+  template <class = void>
   [[nodiscard]] glide_found described(likelihood_peak top) const {
     glide_found out{shape_, top.at, std::numeric_limits<double>::infinity(), top.gain, 0};
     if (!(top.at > 0)) return out;
@@ -125,7 +132,8 @@ namespace detail {
 
 /// A line that glides looks as if it died sooner: the powers fall as the lines do without the glide, and that makes it another
 /// one.
-inline glide_found with_own_rates(const pickup_ringing& r, glide_found g, double detuning) {
+template <class = void>
+glide_found with_own_rates(const pickup_ringing& r, glide_found g, double detuning) {
   constexpr int rounds = 2;
   for (int round = 0; round < rounds && g.relative > 0; ++round) {
     glide_shape shape = g.shape;
@@ -144,7 +152,8 @@ inline glide_found with_own_rates(const pickup_ringing& r, glide_found g, double
 
 /// The likelier of the shapes; `power_known`: the sensor tells the powers, and no other shape is asked for. detuning: of pairs,
 /// or 0.
-[[nodiscard]] inline glide_found find_glide(const pickup_ringing& r, bool power_known, double detuning = 0) {
+template <class = void>
+[[nodiscard]] glide_found find_glide(const pickup_ringing& r, bool power_known, double detuning = 0) {
   glide_found best = detail::with_own_rates(r, detail::glide_search(r, shape_by_power(r), detuning).best(), detuning);
   if (power_known) return best;
   const double rate = detail::glide_decay(r.tracks);
@@ -155,5 +164,6 @@ inline glide_found with_own_rates(const pickup_ringing& r, glide_found g, double
   }
   return best;
 }
+ROSIN_INSTANTIATE(glide_found find_glide(const pickup_ringing&, bool, double))
 
 }  // namespace rosin

@@ -7,6 +7,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_effects.hpp>
 
 namespace rosin {
@@ -48,8 +49,9 @@ struct tried_effect {
   double evidence;
 };
 
-inline std::vector<tried_effect> try_each(const line_table& table, const fitted_law& base,
-                                          const std::vector<law_effect>& catalogue, const greedy_limits& limits) {
+template <class = void>
+std::vector<tried_effect> try_each(const line_table& table, const fitted_law& base, const std::vector<law_effect>& catalogue,
+                                   const greedy_limits& limits) {
   std::vector<tried_effect> out;
   for (const auto& e : catalogue) {
     const bool there =
@@ -62,7 +64,8 @@ inline std::vector<tried_effect> try_each(const line_table& table, const fitted_
   return out;
 }
 
-inline fitted_law without_effect(const line_table& table, const fitted_law& fit, const law_effect& e) {
+template <class = void>
+fitted_law without_effect(const line_table& table, const fitted_law& fit, const law_effect& e) {
   fitted_law less = fit;
   std::erase_if(less.parameters, [&](const auto& p) {
     return std::any_of(e.parameters.begin(), e.parameters.end(), [&](const auto& q) { return q.member == p.member; });
@@ -73,8 +76,8 @@ inline fitted_law without_effect(const line_table& table, const fitted_law& fit,
 }
 
 /// Each effect found is taken out and sought anew: it stays, makes room for a better one, or goes.
-inline void exchange(const line_table& table, const std::vector<law_effect>& catalogue, const greedy_limits& limits,
-                     law_search& s) {
+template <class = void>
+void exchange(const line_table& table, const std::vector<law_effect>& catalogue, const greedy_limits& limits, law_search& s) {
   for (std::size_t i = 0; i < s.found.size() && s.found.size() > 1;) {
     const fitted_law less = without_effect(table, s.best, s.found[i].effect);
     const double now = worth_of(s.best, table.lines.size(), limits), before = worth_of(less, table.lines.size(), limits);
@@ -89,14 +92,15 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
     ++i;
   }
 }
+ROSIN_INSTANTIATE(void exchange(const line_table&, const std::vector<law_effect>&, const greedy_limits&, law_search&))
 
 }  // namespace detail
 
 /// `held`: partials that are predicted only; those above all of the table are not asked for, and none are where that leaves fewer
 /// than four.
-[[nodiscard]] inline law_search search_law(const line_table& table, const fitted_law& declared,
-                                           const std::vector<law_effect>& catalogue, line_table held = {},
-                                           const greedy_limits& limits = {}) {
+template <class = void>
+[[nodiscard]] law_search search_law(const line_table& table, const fitted_law& declared, const std::vector<law_effect>& catalogue,
+                                    line_table held = {}, const greedy_limits& limits = {}) {
   std::erase_if(held.lines, [&](const string_line& l) { return l.number > table.lines.back().number; });
   law_search s{declared, declared, {}, {}, 0};
   const double nothing = detail::worth_of(declared, table.lines.size(), limits);
@@ -129,5 +133,7 @@ inline void exchange(const line_table& table, const std::vector<law_effect>& cat
   s.gain = detail::worth_of(s.best, table.lines.size(), limits) - nothing;
   return s;
 }
+ROSIN_INSTANTIATE(law_search search_law(const line_table&, const fitted_law&, const std::vector<law_effect>&, line_table,
+                                        const greedy_limits&))
 
 }  // namespace rosin

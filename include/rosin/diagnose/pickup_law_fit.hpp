@@ -12,10 +12,12 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_poles.hpp>
 #include <rosin/diagnose/pickup_table.hpp>
 
 #include <array>
+#include <utility>
 
 namespace rosin {
 
@@ -25,6 +27,34 @@ struct law_parameter {
   double pickup_law::*member = nullptr;
   double low = 0, high = 1;
   bool logarithmic = false;
+};
+
+/// Asks of a column of derivatives of (frequencies, decays): by how much would the weighted squares fall, half of it, if it joined
+/// the parameters of a law, and what is its best size?
+class law_score {
+public:
+  /// Roots of the weights; weighted Jacobian of the parameters that are free already; weighted residual.
+  template <class = void>
+  law_score(Eigen::VectorXd root, Eigen::MatrixXd jacobian, const Eigen::VectorXd& residual)
+      : root_{std::move(root)}, jacobian_{std::move(jacobian)}, qr_{jacobian_}, rest_{without_jacobian(residual)} {}
+
+  template <class Real = double>
+  [[nodiscard]] std::pair<double, double> operator()(const Eigen::VectorXd& column) const {
+    const Eigen::VectorX<Real> clean = without_jacobian(column.cwiseProduct(root_));
+    const double size = clean.dot(rest_) / std::max(clean.squaredNorm(), 1e-300);
+    return {0.5 * size * clean.dot(rest_), size};
+  }
+
+private:
+  Eigen::VectorXd root_;
+  Eigen::MatrixXd jacobian_;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  Eigen::VectorXd rest_;
+
+  template <class = void>
+  [[nodiscard]] Eigen::VectorXd without_jacobian(const Eigen::VectorXd& v) const {
+    return v - jacobian_ * qr_.solve(v);
+  }
 };
 
 struct fitted_law {
@@ -58,7 +88,8 @@ inline Eigen::VectorXd predicted_lines(const line_table& table, const pickup_law
 }
 
 /// What a prediction leaves of frequencies and of decays, with their errors and the shape of their scatter.
-inline std::array<robust_data, 2> left_by_law(const line_table& table, const Eigen::VectorXd& predicted, bool in_proportion) {
+template <class = void>
+std::array<robust_data, 2> left_by_law(const line_table& table, const Eigen::VectorXd& predicted, bool in_proportion) {
   const auto n = static_cast<Eigen::Index>(table.lines.size());
   std::array<robust_data, 2> left;
   for (auto& d : left) d.y.resize(n), d.variance.resize(n), d.shape.resize(n);
@@ -87,16 +118,17 @@ public:
       : table_{table}, parameters_{parameters}, proportion_{in_proportion}, rows_{static_cast<Eigen::Index>(table.lines.size())} {
   }
 
+  template <class Real = double>
   [[nodiscard]] fitted_law fit(pickup_law start) const {
     fitted_law best;
     best.law = start, best.parameters = parameters_, best.in_proportion = proportion_;
     auto state = look(start);
     double damping = 1e-2;
     for (int i = 0; i < 60 && damping < 1e8; ++i) {
-      const Eigen::MatrixXd j = jacobian(best.law).array().colwise() * state.weight.cwiseSqrt().array();
-      const Eigen::VectorXd r = state.residual.cwiseProduct(state.weight.cwiseSqrt());
-      Eigen::MatrixXd normal = j.transpose() * j;
-      normal.diagonal() += damping * normal.diagonal() + Eigen::VectorXd::Constant(normal.rows(), 1e-300);
+      const Eigen::MatrixX<Real> j = jacobian(best.law).array().colwise() * state.weight.cwiseSqrt().array();
+      const Eigen::VectorX<Real> r = state.residual.cwiseProduct(state.weight.cwiseSqrt());
+      Eigen::MatrixX<Real> normal = j.transpose() * j;
+      normal.diagonal() += damping * normal.diagonal() + Eigen::VectorX<Real>::Constant(normal.rows(), 1e-300);
       const pickup_law next = moved(best.law, normal.ldlt().solve(j.transpose() * r));
       auto there = look(next);
       if (!(there.log_likelihood > state.log_likelihood)) {
@@ -111,19 +143,13 @@ public:
     return best;
   }
 
-  /// Asks of a derivative of (f, a): by how much would the weighted squares fall, half of it, if it joined the parameters at this
-  /// law, and what is its best size?
-  [[nodiscard]] auto score_at(const pickup_law& l) const {
-    const auto state = look(l);
-    const Eigen::VectorXd root = state.weight.cwiseSqrt(), r = state.residual.cwiseProduct(root);
-    const Eigen::MatrixXd j = jacobian(l).array().colwise() * root.array();
-    const auto qr = j.colPivHouseholderQr();
-    const Eigen::VectorXd rest = r - j * qr.solve(r);
-    return [root, j, qr, rest](const Eigen::VectorXd& column) {
-      const Eigen::VectorXd c = column.cwiseProduct(root), clean = c - j * qr.solve(c);
-      const double size = clean.dot(rest) / std::max(clean.squaredNorm(), 1e-300);
-      return std::pair{0.5 * size * clean.dot(rest), size};
-    };
+  /// What a further parameter at this law would do.
+  template <class Real = double>
+  [[nodiscard]] law_score score_at(const pickup_law& l) const {
+    const view state = look(l);
+    const Eigen::VectorX<Real> root = state.weight.cwiseSqrt();
+    const Eigen::MatrixX<Real> j = jacobian(l).array().colwise() * root.array();
+    return {root, j, state.residual.cwiseProduct(root)};
   }
   [[nodiscard]] Eigen::VectorXd predicted(const pickup_law& l) const { return predicted_lines(table_, l); }
 
@@ -132,15 +158,16 @@ private:
     Eigen::VectorXd residual, weight;
     double scatter_Hz = 0, scatter_decay = 0, log_likelihood = 0;
   };
+  template <class Real = double>
   [[nodiscard]] view look(const pickup_law& l) const {
     const auto left = left_by_law(table_, predicted(l), proportion_);
-    view v{Eigen::VectorXd(2 * rows_), Eigen::VectorXd(2 * rows_)};
+    view v{Eigen::VectorX<Real>(2 * rows_), Eigen::VectorX<Real>(2 * rows_)};
     const auto half = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(parameters_.size()) / 2);
     for (Eigen::Index b = 0; b < 2; ++b) {
       const auto& d = left[static_cast<std::size_t>(b)];
       double& scatter = b == 0 ? v.scatter_Hz : v.scatter_decay;
       scatter = scatter_of(d, d.y, half, law_limits);
-      const Eigen::VectorXd sigma = spread_of(d, scatter);
+      const Eigen::VectorX<Real> sigma = spread_of(d, scatter);
       v.residual.segment(b * rows_, rows_) = d.y;
       for (Eigen::Index i = 0; i < rows_; ++i)
         v.weight[b * rows_ + i] = law_limits.weight(std::abs(d.y[i]) / sigma[i]) / (sigma[i] * sigma[i]);
@@ -157,8 +184,9 @@ private:
     }
     return l;
   }
+  template <class Real = double>
   [[nodiscard]] Eigen::MatrixXd jacobian(const pickup_law& l) const {
-    Eigen::MatrixXd j(2 * rows_, static_cast<Eigen::Index>(parameters_.size()));
+    Eigen::MatrixX<Real> j(2 * rows_, static_cast<Eigen::Index>(parameters_.size()));
     for (std::size_t k = 0; k < parameters_.size(); ++k) {
       const auto& p = parameters_[k];
       pickup_law up = l, down = l;
@@ -169,12 +197,13 @@ private:
     }
     return j;
   }
+  template <class Real = double>
   void finish(fitted_law& f, const view& v) const {
     f.log_likelihood = v.log_likelihood, f.scatter_Hz = v.scatter_Hz, f.scatter_decay = v.scatter_decay;
-    const Eigen::MatrixXd j = jacobian(f.law).array().colwise() * v.weight.cwiseSqrt().array();
-    const Eigen::VectorXd size = j.colwise().norm().transpose().cwiseMax(1e-300);
-    const Eigen::MatrixXd unit = j * size.cwiseInverse().asDiagonal();
-    const Eigen::MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixX<Real> j = jacobian(f.law).array().colwise() * v.weight.cwiseSqrt().array();
+    const Eigen::VectorX<Real> size = j.colwise().norm().transpose().cwiseMax(1e-300);
+    const Eigen::MatrixX<Real> unit = j * size.cwiseInverse().asDiagonal();
+    const Eigen::MatrixX<Real> inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
     const double free = static_cast<double>(2 * rows_) - static_cast<double>(parameters_.size());
     f.sd = (inverse.diagonal() * (free > 2.5 ? free / (free - 2) : 5.0)).cwiseMax(0.0).cwiseSqrt().cwiseQuotient(size);
     for (std::size_t k = 0; k < parameters_.size(); ++k)
@@ -190,8 +219,8 @@ private:
 }  // namespace detail
 
 /// From `start` on, with the scatter of the likelier shape. Precondition: at least four lines.
-[[nodiscard]] inline fitted_law fit_law(const line_table& table, const std::vector<law_parameter>& parameters,
-                                        const pickup_law& start) {
+template <class = void>
+[[nodiscard]] fitted_law fit_law(const line_table& table, const std::vector<law_parameter>& parameters, const pickup_law& start) {
   fitted_law alike = detail::law_problem(table, parameters, false).fit(start);
   fitted_law scaled = detail::law_problem(table, parameters, true).fit(start);
   return scaled.log_likelihood > alike.log_likelihood ? scaled : alike;
@@ -199,9 +228,10 @@ private:
 
 /// ln L of other partials of the same string (another pitch is allowed) by a law that was fitted elsewhere, with the scatter that
 /// they themselves have about it.
-[[nodiscard]] inline double predicted_log_likelihood(const line_table& table, const fitted_law& fit) {
+template <class Real = double>
+[[nodiscard]] double predicted_log_likelihood(const line_table& table, const fitted_law& fit) {
   const auto n = static_cast<Eigen::Index>(table.lines.size());
-  Eigen::VectorXd y = detail::predicted_lines(table, fit.law), off(n);
+  Eigen::VectorX<Real> y = detail::predicted_lines(table, fit.law), off(n);
   for (Eigen::Index i = 0; i < n; ++i) off[i] = std::log(table.lines[static_cast<std::size_t>(i)].frequency_Hz / y[i]);
   y.head(n) *= std::exp(median_of(off));
   double sum = 0;
@@ -209,5 +239,6 @@ private:
     sum += detail::robust_log_likelihood(d.y, detail::spread_of(d, detail::scatter_of(d, d.y, 1, detail::law_limits)));
   return sum;
 }
+ROSIN_INSTANTIATE(double predicted_log_likelihood(const line_table&, const fitted_law&))
 
 }  // namespace rosin

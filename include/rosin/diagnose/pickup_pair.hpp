@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_ringing.hpp>
 
 #include <array>
@@ -58,7 +59,8 @@ struct pair_normals {
 };
 
 /// `relative`: the shift grows with the frequency of the first line by so much.
-inline pair_normals normals_of(complex_span z, double rate_Hz, const line_pair& p, double relative) {
+template <class = void>
+pair_normals normals_of(complex_span z, double rate_Hz, const line_pair& p, double relative) {
   constexpr std::complex<double> i{0, 1};
   pair_normals n;
   const auto step = std::exp(std::complex<double>{-p.decay_per_s, p.detuning_rad_s} / rate_Hz),
@@ -85,15 +87,18 @@ inline pair_normals normals_of(complex_span z, double rate_Hz, const line_pair& 
 }
 
 /// The amplitudes by themselves.
-inline void set_amplitudes(complex_span z, double rate_Hz, line_pair& p, double relative) {
+template <class Real = double>
+void set_amplitudes(complex_span z, double rate_Hz, line_pair& p, double relative) {
   p.amplitude = {};
   const auto n = normals_of(z, rate_Hz, p, relative);
-  const Eigen::VectorXd c = Eigen::MatrixXd(n.matrix.topLeftCorner(4, 4)).ldlt().solve(Eigen::VectorXd(n.gradient.head(4)));
+  const Eigen::VectorX<Real> c =
+      Eigen::MatrixX<Real>(n.matrix.topLeftCorner(4, 4)).ldlt().solve(Eigen::VectorX<Real>(n.gradient.head(4)));
   p.amplitude = {std::complex{c[0], c[1]}, std::complex{c[2], c[3]}};
 }
 
 /// Levenberg and Marquardt from decay and detuning.
-inline line_pair fit_pair_from(const partial_track& t, line_pair p, double relative) {
+template <class Real = double>
+line_pair fit_pair_from(const partial_track& t, line_pair p, double relative) {
   const complex_span z{t.samples};
   const double centre = full_turn * t.fit.model.centre_Hz;
   p.shift_rad_s = relative * (centre + p.detuning_rad_s);
@@ -103,7 +108,7 @@ inline line_pair fit_pair_from(const partial_track& t, line_pair p, double relat
   for (int k = 0; k < 25 && damping < 1e7; ++k) {
     auto damped = n.matrix;
     damped.diagonal() *= 1 + damping;
-    const Eigen::VectorXd by = Eigen::MatrixXd(damped).ldlt().solve(Eigen::VectorXd(n.gradient));
+    const Eigen::VectorX<Real> by = Eigen::MatrixX<Real>(damped).ldlt().solve(Eigen::VectorX<Real>(n.gradient));
     line_pair next = p;
     next.amplitude[0] += std::complex{by[0], by[1]};
     next.amplitude[1] += std::complex{by[2], by[3]};
@@ -125,7 +130,8 @@ inline line_pair fit_pair_from(const partial_track& t, line_pair p, double relat
 }  // namespace detail
 
 /// The best pair with that relative distance: the line that was fitted alone may be either of the two.
-[[nodiscard]] inline line_pair fit_pair(const partial_track& t, double relative) {
+template <class = void>
+[[nodiscard]] line_pair fit_pair(const partial_track& t, double relative) {
   const damped_part& one = t.fit.model.parts[0];
   const double shift = relative * (detail::full_turn * t.fit.model.centre_Hz + one.detuning_rad_s);
   line_pair start;
@@ -155,7 +161,8 @@ struct pair_found {
 
 namespace detail {
 
-inline double pair_gain(const std::vector<const partial_track*>& tracks, double relative) {
+template <class = void>
+double pair_gain(const std::vector<const partial_track*>& tracks, double relative) {
   double sum = 0;
   for (const auto* t : tracks) sum += gain_of_pair(*t, fit_pair(*t, relative));
   return sum;
@@ -171,18 +178,19 @@ inline std::complex<double> ratio_of(const partial_track& t, const line_pair& p,
 }
 
 /// The weaker line against the stronger at the release, some time before the tracks begin: the delay that makes their ratio real.
-inline void describe_coupling(const std::vector<const partial_track*>& tracks, const std::vector<line_pair>& pairs,
-                              std::size_t main, pair_found& p) {
+template <class Real = double>
+void describe_coupling(const std::vector<const partial_track*>& tracks, const std::vector<line_pair>& pairs, std::size_t main,
+                       pair_found& p) {
   const auto n = static_cast<Eigen::Index>(pairs.size());
-  robust_data each{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd::Ones(n)}, best = each;
-  const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& y, Eigen::MatrixXd& J) {
+  robust_data each{Eigen::VectorX<Real>(n), Eigen::VectorX<Real>(n), Eigen::VectorX<Real>::Ones(n)}, best = each;
+  const auto constant = [](const Eigen::VectorX<Real>& theta, Eigen::VectorX<Real>& y, Eigen::MatrixX<Real>& J) {
     y.setConstant(theta[0]), J.setOnes();
   };
   double least = std::numeric_limits<double>::infinity();
   std::vector<double> sharpness;  // what an amplitude's variance is, per noise
   std::vector<std::complex<double>> ratios;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const Eigen::MatrixXd information = pairs[k].information;
+    const Eigen::MatrixX<Real> information = pairs[k].information;
     ratios.push_back(ratio_of(*tracks[k], pairs[k], main));
     sharpness.push_back(noise_of(*tracks[k]).away / 2 * information.completeOrthogonalDecomposition().pseudoInverse()(2, 2));
   }
@@ -198,12 +206,13 @@ inline void describe_coupling(const std::vector<const partial_track*>& tracks, c
     }
     if (off < least) least = off, best = each;
   }
-  const robust_fit fit = robust_regression(best, constant, Eigen::VectorXd::Constant(1, median_of(best.y)));
+  const robust_fit fit = robust_regression(best, constant, Eigen::VectorX<Real>::Constant(1, median_of(best.y)));
   p.coupling = fit.value[0], p.coupling_sd = std::sqrt(fit.covariance(0, 0));
 }
 
 /// Which line is the string's own in the sensor's plane: the stronger; and how strong the other is against it.
-inline void describe_pair(const std::vector<const partial_track*>& tracks, pair_found& p) {
+template <class = void>
+void describe_pair(const std::vector<const partial_track*>& tracks, pair_found& p) {
   double lower = 0, upper = 0;
   std::vector<line_pair> pairs;
   for (const auto* t : tracks) {
@@ -220,7 +229,8 @@ inline void describe_pair(const std::vector<const partial_track*>& tracks, pair_
 }  // namespace detail
 
 /// Sought from 3e-5 to 0.02.
-[[nodiscard]] inline pair_found find_pair(const std::vector<const partial_track*>& tracks) {
+template <class = void>
+[[nodiscard]] pair_found find_pair(const std::vector<const partial_track*>& tracks) {
   const auto gain = [&](double x) { return detail::pair_gain(tracks, x); };
   detail::likelihood_peak top;
   for (double x = 3e-5; x < 0.02; x *= 1.09)
@@ -233,5 +243,6 @@ inline void describe_pair(const std::vector<const partial_track*>& tracks, pair_
   detail::describe_pair(tracks, p);
   return p;
 }
+ROSIN_INSTANTIATE(pair_found find_pair(const std::vector<const partial_track*>&))
 
 }  // namespace rosin

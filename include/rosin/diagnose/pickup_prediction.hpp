@@ -9,6 +9,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_glide_path.hpp>
 
 #include <complex>
@@ -93,6 +94,7 @@ public:
     for (const auto& l : lines) paths_.emplace_back(glide->shape, l.number, rate_Hz, count);
   }
   /// Rows from..from + block of the design matrix: re, -im of each line.
+  template <class = void>
   void fill(std::size_t from, std::size_t block, Eigen::MatrixXd& out) const {
     out.resize(static_cast<Eigen::Index>(block), static_cast<Eigen::Index>(2 * lines_.size()));
     for (std::size_t k = 0; k < lines_.size(); ++k) {
@@ -115,9 +117,11 @@ private:
 };
 
 /// Of the lower half of X^T X and of X^T x; lines that are alike share what there is.
-inline Eigen::VectorXd amplitudes_by(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right) {
-  const Eigen::VectorXd size = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = size.asDiagonal() * Eigen::MatrixXd(gram.selfadjointView<Eigen::Lower>()) * size.asDiagonal();
+template <class Real = double>
+Eigen::VectorXd amplitudes_by(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right) {
+  const Eigen::VectorX<Real> size = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixX<Real> scaled =
+      size.asDiagonal() * Eigen::MatrixX<Real>(gram.template selfadjointView<Eigen::Lower>()) * size.asDiagonal();
   scaled.diagonal().array() += 1e-10;
   return size.cwiseProduct(scaled.ldlt().solve(size.cwiseProduct(right)));
 }
@@ -129,14 +133,15 @@ namespace detail {
 inline constexpr std::size_t line_block = 512;
 
 /// Amplitudes of the columns at the beginning of the stretch.
-inline Eigen::VectorXd fit_columns(const judged_stretch& s, const line_columns& columns, Eigen::Index n) {
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n), part;
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+template <class Real = double>
+Eigen::VectorXd fit_columns(const judged_stretch& s, const line_columns& columns, Eigen::Index n) {
+  Eigen::MatrixX<Real> gram = Eigen::MatrixX<Real>::Zero(n, n), part;
+  Eigen::VectorX<Real> right = Eigen::VectorX<Real>::Zero(n);
   for (std::size_t from = 0; from < s.x.size(); from += line_block) {
     const std::size_t size = std::min(line_block, s.x.size() - from);
     columns.fill(from, size, part);
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
-    right += part.transpose() * Eigen::Map<const Eigen::VectorXd>(s.x.data() + from, static_cast<Eigen::Index>(size));
+    gram.template selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
+    right += part.transpose() * Eigen::Map<const Eigen::VectorX<Real>>(s.x.data() + from, static_cast<Eigen::Index>(size));
   }
   return amplitudes_by(gram, right);
 }
@@ -144,27 +149,31 @@ inline Eigen::VectorXd fit_columns(const judged_stretch& s, const line_columns& 
 }  // namespace detail
 
 /// What these lines leave of it.
-[[nodiscard]] inline std::vector<double> left_by_lines(const judged_stretch& s, const std::vector<predicted_line>& lines,
-                                                       const glide_found* glide = nullptr) {
+template <class Real = double>
+[[nodiscard]] std::vector<double> left_by_lines(const judged_stretch& s, const std::vector<predicted_line>& lines,
+                                                const glide_found* glide = nullptr) {
   const detail::line_columns columns(lines, glide, s.rate_Hz, s.x.size());
-  const Eigen::VectorXd amplitude = detail::fit_columns(s, columns, static_cast<Eigen::Index>(2 * lines.size()));
+  const Eigen::VectorX<Real> amplitude = detail::fit_columns(s, columns, static_cast<Eigen::Index>(2 * lines.size()));
   std::vector<double> left = s.x;
-  Eigen::MatrixXd part;
+  Eigen::MatrixX<Real> part;
   for (std::size_t from = 0; from < left.size(); from += detail::line_block) {
     const std::size_t size = std::min(detail::line_block, left.size() - from);
     columns.fill(from, size, part);
-    Eigen::Map<Eigen::VectorXd>(left.data() + from, static_cast<Eigen::Index>(size)) -= part * amplitude;
+    Eigen::Map<Eigen::VectorX<Real>>(left.data() + from, static_cast<Eigen::Index>(size)) -= part * amplitude;
   }
   return left;
 }
+ROSIN_INSTANTIATE(std::vector<double> left_by_lines(const judged_stretch&, const std::vector<predicted_line>&,
+                                                    const glide_found*))
 
 /// Takes lines that last from the whole recording, as large as they are in a stretch of it beside lines that are not taken out.
-inline void take_out_lines(pickup_signal& s, const judged_stretch& stretch, const std::vector<predicted_line>& lines,
-                           std::vector<predicted_line> beside, const glide_found* glide = nullptr) {
+template <class Real = double>
+void take_out_lines(pickup_signal& s, const judged_stretch& stretch, const std::vector<predicted_line>& lines,
+                    std::vector<predicted_line> beside, const glide_found* glide = nullptr) {
   const auto first = static_cast<Eigen::Index>(2 * beside.size());
   beside.insert(beside.end(), lines.begin(), lines.end());
   const detail::line_columns columns(beside, glide, stretch.rate_Hz, stretch.x.size());
-  const Eigen::VectorXd amplitude = detail::fit_columns(stretch, columns, static_cast<Eigen::Index>(2 * beside.size()));
+  const Eigen::VectorX<Real> amplitude = detail::fit_columns(stretch, columns, static_cast<Eigen::Index>(2 * beside.size()));
   const double begin = std::floor(stretch.start_s * s.rate_Hz);
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const auto at = first + static_cast<Eigen::Index>(2 * k);

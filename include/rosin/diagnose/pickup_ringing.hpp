@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/calibrate/pickup_fit.hpp>
+#include <rosin/core/instantiate.hpp>
 
 #include <cmath>
 #include <limits>
@@ -88,9 +89,10 @@ inline double slope_weight(pickup_kind kind, double position, int n) {
 }
 
 /// The partials between from_s and to_s, and at places where a law `foretold` some. Fails as fit_pickup does.
-[[nodiscard]] inline outcome<pickup_ringing> listen(const pickup_signal& s, double nominal_Hz,
-                                                    const std::vector<numbered_frequency>& foretold = {},
-                                                    const pickup_options& options = {}) {
+template <class = void>
+[[nodiscard]] outcome<pickup_ringing> listen(const pickup_signal& s, double nominal_Hz,
+                                             const std::vector<numbered_frequency>& foretold = {},
+                                             const pickup_options& options = {}) {
   if (const auto problem = detail::pickup_input_problem(s.values, s.rate_Hz, nominal_Hz, options); !problem.empty())
     return failure{problem};
   const std::span<const double> all{s.values};
@@ -120,5 +122,7 @@ inline double slope_weight(pickup_kind kind, double position, int n) {
     r.power.push_back(detail::power_at_start(t) * detail::slope_weight(s.kind, s.position, t.number));
   return r;
 }
+ROSIN_INSTANTIATE(outcome<pickup_ringing> listen(const pickup_signal&, double, const std::vector<numbered_frequency>&,
+                                                 const pickup_options&))
 
 }  // namespace rosin

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_ringing.hpp>
 #include <rosin/math/spectrum_line.hpp>
 
@@ -60,8 +61,9 @@ inline void find_hum(std::span<const double> x, double rate_Hz, const peak_finde
 
 /// `own`: frequencies of the string's partials, each with `near_Hz` around it out of bounds. Precondition: a second of sound or
 /// so.
-[[nodiscard]] inline stray_lines find_strays(std::span<const double> residual, double rate_Hz, const std::vector<double>& own,
-                                             double near_Hz, double highest_Hz) {
+template <class = void>
+[[nodiscard]] stray_lines find_strays(std::span<const double> residual, double rate_Hz, const std::vector<double>& own,
+                                      double near_Hz, double highest_Hz) {
   const detail::peak_finder peaks{residual, rate_Hz, 60};
   stray_lines out;
   out.resolution_Hz = 4 * peaks.bin_Hz();
@@ -85,5 +87,6 @@ inline void find_hum(std::span<const double> x, double rate_Hz, const peak_finde
   if (out.others.size() > 12) out.others.resize(12);
   return out;
 }
+ROSIN_INSTANTIATE(stray_lines find_strays(std::span<const double>, double, const std::vector<double>&, double, double))
 
 }  // namespace rosin

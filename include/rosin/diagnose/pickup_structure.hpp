@@ -9,6 +9,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_glide_path.hpp>
 
 #include <limits>
@@ -33,17 +34,21 @@ namespace detail {
 
 inline constexpr double agreement = 0.6;
 
-inline pickup_ringing steady(const pickup_ringing& r, const glide_found& g) {
+template <class = void>
+pickup_ringing steady(const pickup_ringing& r, const glide_found& g) {
   pickup_ringing out = r;
   if (g.relative > 0)
     for (auto& t : out.tracks) t = without_glide(t, path_along(g.shape, t), g.relative, 1.5 * r.tolerance_Hz);
   return out;
 }
-inline std::vector<pickup_ringing> steady(const std::vector<pickup_ringing>& all, const std::vector<glide_found>& g) {
+ROSIN_INSTANTIATE(pickup_ringing steady(const pickup_ringing&, const glide_found&))
+template <class = void>
+std::vector<pickup_ringing> steady(const std::vector<pickup_ringing>& all, const std::vector<glide_found>& g) {
   std::vector<pickup_ringing> out;
   for (std::size_t i = 0; i < all.size(); ++i) out.push_back(steady(all[i], g[i]));
   return out;
 }
+ROSIN_INSTANTIATE(std::vector<pickup_ringing> steady(const std::vector<pickup_ringing>&, const std::vector<glide_found>&))
 
 inline std::vector<const partial_track*> clearest_of(const std::vector<pickup_ringing>& all) {
   std::vector<const partial_track*> out;
@@ -52,8 +57,9 @@ inline std::vector<const partial_track*> clearest_of(const std::vector<pickup_ri
   return out;
 }
 
-inline structure_hypothesis with_glide(const std::vector<pickup_ringing>& all, const structure_question& ask,
-                                       const structure_hypothesis& base) {
+template <class = void>
+structure_hypothesis with_glide(const std::vector<pickup_ringing>& all, const structure_question& ask,
+                                const structure_hypothesis& base) {
   structure_hypothesis h = base;
   h.glides = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -67,7 +73,8 @@ inline structure_hypothesis with_glide(const std::vector<pickup_ringing>& all, c
   return h;
 }
 
-inline structure_hypothesis with_pairs(const std::vector<pickup_ringing>& all, const structure_hypothesis& base) {
+template <class = void>
+structure_hypothesis with_pairs(const std::vector<pickup_ringing>& all, const structure_hypothesis& base) {
   structure_hypothesis h = base;
   const auto still = base.glides ? steady(all, base.glide) : all;
   const auto tracks = clearest_of(still);
@@ -80,7 +87,8 @@ inline structure_hypothesis with_pairs(const std::vector<pickup_ringing>& all, c
 }
 
 /// Pairs each of its own.
-inline structure_hypothesis with_doubles(const std::vector<pickup_ringing>& all, const structure_hypothesis& base) {
+template <class = void>
+structure_hypothesis with_doubles(const std::vector<pickup_ringing>& all, const structure_hypothesis& base) {
   structure_hypothesis h = base;
   const auto still = base.glides ? steady(all, base.glide) : all;
   double count = 0, doubled = 0;
@@ -101,7 +109,8 @@ inline structure_hypothesis with_doubles(const std::vector<pickup_ringing>& all,
 }
 
 /// Glide and pairs together: the strength of each once more with the other known.
-inline structure_hypothesis refined(const std::vector<pickup_ringing>& all, structure_hypothesis h) {
+template <class = void>
+structure_hypothesis refined(const std::vector<pickup_ringing>& all, structure_hypothesis h) {
   if (!h.glides || !h.paired) return h;
   for (int round = 0; round < 2; ++round) {
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -118,8 +127,9 @@ inline structure_hypothesis refined(const std::vector<pickup_ringing>& all, stru
 
 /// All that was tried, the likeliest first; but two effects only where the second is worth three tenths of what one alone is,
 /// since no model of a glide is exact, and what one effect leaves another one takes up.
-[[nodiscard]] inline std::vector<structure_hypothesis> structures_of(const std::vector<pickup_ringing>& all,
-                                                                     const structure_question& ask) {
+template <class = void>
+[[nodiscard]] std::vector<structure_hypothesis> structures_of(const std::vector<pickup_ringing>& all,
+                                                              const structure_question& ask) {
   std::vector<structure_hypothesis> tried{{}};
   const bool glide = ask.glide || ask.glide_declared, pairs = ask.pairs || ask.pairs_declared;
   if (glide) tried.push_back(detail::with_glide(all, ask, {}));
@@ -143,5 +153,6 @@ inline structure_hypothesis refined(const std::vector<pickup_ringing>& all, stru
   std::stable_sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
   return tried;
 }
+ROSIN_INSTANTIATE(std::vector<structure_hypothesis> structures_of(const std::vector<pickup_ringing>&, const structure_question&))
 
 }  // namespace rosin

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_structure.hpp>
 
 #include <map>
@@ -32,7 +33,8 @@ struct line_table {
 
 namespace detail {
 
-inline std::optional<string_line> line_of_pair(const partial_track& t, double detuning) {
+template <class Real = double>
+std::optional<string_line> line_of_pair(const partial_track& t, double detuning) {
   const line_pair p = fit_pair(t, std::abs(detuning));
   const std::size_t main = detuning > 0 ? 0 : 1;  // the stronger
   const double shift = main == 0 ? 0 : p.shift_rad_s;
@@ -44,8 +46,8 @@ inline std::optional<string_line> line_of_pair(const partial_track& t, double de
   const double noise =
       std::max(noise_beside(left_over(t.samples, t.rate_Hz, both), t.rate_Hz, both.parts[main], t.window).at_line,
                1e-24 * energy_of(t.samples));
-  const Eigen::MatrixXd information = p.information,
-                        covariance = noise / 2 * information.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixX<Real> information = p.information,
+                             covariance = noise / 2 * information.completeOrthogonalDecomposition().pseudoInverse();
   return string_line{t.number,
                      t.fit.model.centre_Hz + (p.detuning_rad_s + shift) / full_turn,
                      std::sqrt(covariance(5, 5)) / full_turn,
@@ -54,7 +56,8 @@ inline std::optional<string_line> line_of_pair(const partial_track& t, double de
                      0};
 }
 
-inline std::optional<string_line> line_of(partial_track t, const structure_hypothesis& h, const pickup_ringing& r) {
+template <class = void>
+std::optional<string_line> line_of(partial_track t, const structure_hypothesis& h, const pickup_ringing& r) {
   if (h.paired) return line_of_pair(t, h.pair.detuning);
   if (h.doubled)
     t.fit = one_or_two_lines(t.samples, t.rate_Hz, t.fit, 1.5 * r.tolerance_Hz, filled_with_noise(t.window, t.rate_Hz));
@@ -67,8 +70,10 @@ inline std::optional<string_line> line_of(partial_track t, const structure_hypot
   out.split_Hz = (parts[1 - main].detuning_rad_s - parts[main].detuning_rad_s) / full_turn;
   return out;
 }
+ROSIN_INSTANTIATE(std::optional<string_line> line_of(partial_track, const structure_hypothesis&, const pickup_ringing&))
 
-inline double offset_between(const std::vector<string_line>& lines, const std::map<int, string_line>& reference) {
+template <class Real = double>
+double offset_between(const std::vector<string_line>& lines, const std::map<int, string_line>& reference) {
   std::vector<double> y, v;
   for (const auto& l : lines)
     if (const auto at = reference.find(l.number); at != reference.end()) {
@@ -77,13 +82,14 @@ inline double offset_between(const std::vector<string_line>& lines, const std::m
     }
   if (y.size() < 2) return y.empty() ? 0.0 : y[0];
   const auto n = static_cast<Eigen::Index>(y.size());
-  const robust_data d{Eigen::Map<Eigen::VectorXd>(y.data(), n), Eigen::Map<Eigen::VectorXd>(v.data(), n),
-                      Eigen::VectorXd::Ones(n)};
-  const auto constant = [](const Eigen::VectorXd& theta, Eigen::VectorXd& out, Eigen::MatrixXd& J) {
+  const robust_data d{Eigen::Map<Eigen::VectorX<Real>>(y.data(), n), Eigen::Map<Eigen::VectorX<Real>>(v.data(), n),
+                      Eigen::VectorX<Real>::Ones(n)};
+  const auto constant = [](const Eigen::VectorX<Real>& theta, Eigen::VectorX<Real>& out, Eigen::MatrixX<Real>& J) {
     out.setConstant(theta[0]), J.setOnes();
   };
-  return robust_regression(d, constant, Eigen::VectorXd::Constant(1, median_of(d.y))).value[0];
+  return robust_regression(d, constant, Eigen::VectorX<Real>::Constant(1, median_of(d.y))).value[0];
 }
+ROSIN_INSTANTIATE(double offset_between(const std::vector<string_line>&, const std::map<int, string_line>&))
 
 struct mean_of_several {
   double weights = 0, sum = 0, squares = 0;
@@ -99,7 +105,8 @@ struct mean_of_several {
   }
 };
 
-inline line_table combined(const std::vector<std::vector<string_line>>& each) {
+template <class = void>
+line_table combined(const std::vector<std::vector<string_line>>& each) {
   line_table table;
   std::size_t richest = 0;
   for (std::size_t i = 1; i < each.size(); ++i)
@@ -122,6 +129,7 @@ inline line_table combined(const std::vector<std::vector<string_line>>& each) {
         {number, s[0].mean(), s[0].sd(), s[1].mean(), s[1].sd(), splits.count(number) > 0 ? splits[number].mean() : 0.0});
   return table;
 }
+ROSIN_INSTANTIATE(line_table combined(const std::vector<std::vector<string_line>>&))
 
 /// No glide is exactly as modelled: two hundredths of what it shifted a partial while that was heard stay in its error. Nor is the
 /// decay, as amplitudes follow the tension, which falls: four times the glide stays in that one's.
@@ -137,7 +145,8 @@ inline void widen(std::vector<string_line>& lines, const glide_found& g) {
 }  // namespace detail
 
 /// All partials of these ringings that are damped lines, the structure being known. One `glide` each, where it glides.
-[[nodiscard]] inline line_table table_of(const std::vector<pickup_ringing>& all, const structure_hypothesis& h) {
+template <class = void>
+[[nodiscard]] line_table table_of(const std::vector<pickup_ringing>& all, const structure_hypothesis& h) {
   const auto still = h.glides ? detail::steady(all, h.glide) : all;
   std::vector<std::vector<string_line>> each;
   for (std::size_t k = 0; k < still.size(); ++k) {
@@ -152,5 +161,6 @@ inline void widen(std::vector<string_line>& lines, const glide_found& g) {
   }
   return detail::combined(each);
 }
+ROSIN_INSTANTIATE(line_table table_of(const std::vector<pickup_ringing>&, const structure_hypothesis&))
 
 }  // namespace rosin

@@ -9,11 +9,13 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_effects.hpp>
 #include <rosin/diagnose/pluck_order.hpp>
 #include <rosin/diagnose/strong_starts.hpp>
 
 #include <atomic>
+#include <memory>
 #include <optional>
 
 namespace rosin {
@@ -26,8 +28,9 @@ struct scored_start {
 };
 
 /// The starting points of one effect at which the score peaks, the highest first.
-inline std::vector<scored_start> best_starts(const pluck_score& test, const scene_plucks& with, const pluck_effect& e,
-                                             std::size_t most) {
+template <class = void>
+std::vector<scored_start> best_starts(const pluck_score& test, const scene_plucks& with, const pluck_effect& e,
+                                      std::size_t most) {
   std::vector<scored_start> all;
   for (const auto& start : e.starts) {
     const score_result s = test(with, start);
@@ -78,8 +81,9 @@ struct beginnings {
 };
 
 /// Beginnings of effects that are sought in what is left over, by the score over the whole record.
-inline void seek_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
-                            std::array<double, 2> noise, beginnings& out) {
+template <class = void>
+void seek_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
+                     std::array<double, 2> noise, beginnings& out) {
   if (std::none_of(catalogue.begin(), catalogue.end(), [](const pluck_effect& e) { return bool(e.seek); })) return;
   auto problem = data.problem(already.effects, already.value, {}, noise);
   std::size_t strongest = 0;
@@ -92,28 +96,30 @@ inline void seek_beginnings(const scene_data& data, const scene_fit& already, co
   const pluck_scene scene = problem.model().scene(already.value, static_cast<int>(strongest));
   for (int n = 1; scene.string.partial_Hz(n) < problem.limits().stop_Hz && n < 1000; ++n)
     rest.own_Hz.push_back(partial_between_clamps_Hz(scene, n));
-  std::optional<pluck_score> test;
+  std::unique_ptr<pluck_score> test;
   for (std::size_t i = 0; i < catalogue.size(); ++i) {
     pluck_effect e = catalogue[i];
     if (!e.seek) continue;
     e.starts = e.seek(rest);
     if (e.starts.empty()) continue;
-    if (!test) problem.set_noise(problem.assess(already.value).noise), test.emplace(problem, already.value);
+    if (!test)
+      problem.set_noise(problem.assess(already.value).noise), test = std::make_unique<pluck_score>(problem, already.value);
     out.starts[i] =
         best_starts(*test, scene_plucks(data.layout, data.guess.ac_coupled_Hz, with_one_more(already.effects, e)), e, 1);
     out.foremost[i] = !out.starts[i].empty();
   }
 }
 
-inline beginnings find_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
-                                  bool strong, std::array<double, 2> noise) {
+template <class Real = double>
+beginnings find_beginnings(const scene_data& data, const scene_fit& already, const std::vector<pluck_effect>& catalogue,
+                           bool strong, std::array<double, 2> noise) {
   beginnings out{std::vector<std::vector<scored_start>>(catalogue.size()), std::vector<bool>(catalogue.size(), false)};
   std::vector<fit_stage> looks =
       strong ? std::vector<fit_stage>{{1000, 3, true}, {1000, 8, true}, {12, 8, false}} : std::vector<fit_stage>{{}};
   for (fit_stage& look : looks) look.periods = std::min(look.periods, data.most_periods_with(already.effects));
   for (const fit_stage& look : looks) {
     auto problem = data.problem(already.effects, already.value, look, noise);
-    Eigen::VectorXd value = already.value;
+    Eigen::VectorX<Real> value = already.value;
     int iterations = 0;
     descend(problem, problem.model(), already.value, value, 15, 1e-2, iterations);
     if (look.filtered) problem.set_noise(problem.assess(value).noise);
@@ -135,12 +141,15 @@ inline beginnings find_beginnings(const scene_data& data, const scene_fit& alrea
   seek_beginnings(data, already, catalogue, noise, out);
   return out;
 }
+ROSIN_INSTANTIATE(beginnings find_beginnings(const scene_data&, const scene_fit&, const std::vector<pluck_effect>&, bool,
+                                             std::array<double, 2>))
 
 /// The best of several ways to one effect. Where the model is far off: from the first partials of the first periods on, every
 /// start for two short stages and the best of them further; and all partials at once.
-inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fit& already, const pluck_effect& e,
-                                          const std::vector<scored_start>& starts, const std::vector<found_start>& found,
-                                          bool strong, std::array<double, 2> noise) {
+template <class = void>
+std::optional<scene_fit> first_fit(const scene_data& data, const scene_fit& already, const pluck_effect& e,
+                                   const std::vector<scored_start>& starts, const std::vector<found_start>& found, bool strong,
+                                   std::array<double, 2> noise) {
   const std::vector<pluck_effect> effects = with_one_more(already.effects, e);
   std::optional<scene_fit> best;
   const auto keep = [&](scene_fit f) {
@@ -168,7 +177,8 @@ inline std::optional<scene_fit> first_fit(const scene_data& data, const scene_fi
 }
 
 /// Over all of the record, with corrections freed in the end. What lies far behind is not followed further.
-inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool strong, std::array<double, 2> noise) {
+template <class = void>
+void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool strong, std::array<double, 2> noise) {
   constexpr std::size_t most = 5, least = 2;
   if (fits.size() > most) fits.erase(fits.begin() + most, fits.end());
   while (strong && fits.size() > least && cost_of(fits.back(), noise) > 30 * cost_of(fits.front(), noise)) fits.pop_back();
@@ -190,9 +200,10 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
 
 /// Fits of the effects `already` in the model and one more, the best first. `strong`: what is there is far off; effects that no
 /// score tells of are then only tried if no other leaves mere noise. `known`: what earlier calls of the same recordings found.
-[[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already,
-                                                            const std::vector<pluck_effect>& catalogue, bool strong,
-                                                            std::array<double, 2> noise, detail::known_starts& known) {
+template <class = void>
+[[nodiscard]] std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already,
+                                                     const std::vector<pluck_effect>& catalogue, bool strong,
+                                                     std::array<double, 2> noise, detail::known_starts& known) {
   const detail::beginnings begin = detail::find_beginnings(data, already, catalogue, strong, noise);
   std::vector<detail::found_start> found;
   if (strong && already.effects.empty()) found = detail::strong_starts(data, already, catalogue, noise, known);
@@ -227,9 +238,12 @@ inline void follow_up(const scene_data& data, std::vector<scene_fit>& fits, bool
   detail::put_in_order(data, already, fits, noise);
   return fits;
 }
-[[nodiscard]] inline std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already,
-                                                            const std::vector<pluck_effect>& catalogue, bool strong,
-                                                            std::array<double, 2> noise) {
+ROSIN_INSTANTIATE(std::vector<scene_fit> one_more_effect(const scene_data&, const scene_fit&, const std::vector<pluck_effect>&,
+                                                         bool, std::array<double, 2>, detail::known_starts&))
+template <class = void>
+[[nodiscard]] std::vector<scene_fit> one_more_effect(const scene_data& data, const scene_fit& already,
+                                                     const std::vector<pluck_effect>& catalogue, bool strong,
+                                                     std::array<double, 2> noise) {
   detail::known_starts none;
   return one_more_effect(data, already, catalogue, strong, noise, none);
 }

@@ -7,6 +7,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/clock_drift_effect.hpp>
 #include <rosin/diagnose/loosened_plucks.hpp>
 #include <rosin/diagnose/nonlinear_effects.hpp>
@@ -21,18 +22,22 @@ namespace rosin {
 namespace detail {
 
 /// The declared model by itself: a string between ends that are rigid, or that move as is known.
-[[nodiscard]] inline outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess,
-                                                            const pluck_options& options) {
+template <class = void>
+[[nodiscard]] outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess,
+                                                     const pluck_options& options) {
   constexpr double most_residual = 0.95;  // a heavy bead leaves little of the declared string
   if (!guess.has_ends()) return fit_plucks(takes, guess, options, most_residual);
-  auto fit = fit_ends(takes, guess, options, {.free_ends = {false, false}, .most_residual = most_residual});
+  end_options held;
+  held.free_ends = {false, false}, held.most_residual = most_residual;
+  auto fit = fit_ends(takes, guess, options, held);
   if (!fit) return failure{fit.error()};
   return std::move(fit->plucks);
 }
 
 /// The same in the layout of a diagnosis. What is loosened is not free where something strong would bend it.
-[[nodiscard]] inline outcome<pluck_fit_result> fit_declared_loosely(const std::vector<pluck_take>& takes,
-                                                                    const pluck_guess& guess, const pluck_options& options) {
+template <class Real = double>
+[[nodiscard]] outcome<pluck_fit_result> fit_declared_loosely(const std::vector<pluck_take>& takes, const pluck_guess& guess,
+                                                             const pluck_options& options) {
   pluck_options strict = options;
   strict.uneven_loss = strict.own_places = false;
   auto fit = fit_declared(takes, guess, strict);
@@ -44,7 +49,7 @@ namespace detail {
   free.causality = fit->layout.is_free(pluck_layout::causality);
   const pluck_layout layout(takes, free, guess.ends);
   const auto places = places_in(layout, fit->layout, fit->value.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(layout.size(), layout.size());
+  Eigen::MatrixX<Real> covariance = Eigen::MatrixX<Real>::Zero(layout.size(), layout.size());
   for (std::size_t i = 0; i < places.size(); ++i)
     for (std::size_t k = 0; k < places.size(); ++k)
       covariance(places[i], places[k]) = fit->covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
@@ -57,7 +62,8 @@ namespace detail {
 using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_result&)>;
 
 /// Whether loss that disperses accounts for most of what these effects leave (pluck_fit.hpp).
-[[nodiscard]] inline bool leaves_causal_loss(const scene_data& data, const scene_fit& found, std::array<double, 2> noise) {
+template <class = void>
+[[nodiscard]] bool leaves_causal_loss(const scene_data& data, const scene_fit& found, std::array<double, 2> noise) {
   if (data.options.causality || found.quality.inflation() == 1) return false;
   scene_data freed = data;
   freed.options.causality = true;
@@ -88,11 +94,12 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
 }
 
 /// Of recordings as they are. Where the first effect leaves more than `stop_above` (inflation), no other is sought.
-[[nodiscard]] inline outcome<pluck_diagnosis> diagnose_as_recorded(const std::vector<pluck_take>& takes,
-                                                                   const std::vector<pluck_take>& held, const pluck_guess& guess,
-                                                                   pluck_options options, const effects_for& catalogue_for,
-                                                                   int most_effects, double least_temper = 1,
-                                                                   double stop_above = 1e300) {
+template <class = void>
+[[nodiscard]] outcome<pluck_diagnosis> diagnose_as_recorded(const std::vector<pluck_take>& takes,
+                                                            const std::vector<pluck_take>& held, const pluck_guess& guess,
+                                                            pluck_options options, const effects_for& catalogue_for,
+                                                            int most_effects, double least_temper = 1,
+                                                            double stop_above = 1e300) {
   constexpr double clearly_less = 0.9;  // of what the first effect leaves
   auto declared = fit_declared_loosely(takes, guess, options);
   if (!declared) return failure{declared.error()};
@@ -127,7 +134,8 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
 }
 
 /// Without what is no part of the answer, and with the place where the rest acts: if that is a channel, it is looked at there.
-[[nodiscard]] inline pluck_diagnosis concluded(pluck_diagnosis d) {
+template <class = void>
+[[nodiscard]] pluck_diagnosis concluded(pluck_diagnosis d) {
   drop_what_is_no_part(d);
   if (d.explained) return d;
   const auto place = place_of_residual(d.data, d.best, d.mismatch.take);
@@ -145,10 +153,10 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
 
 /// `catalogue_for`: effects that the declared model does not contain. Takes in `held` are predicted only. Where the recordings have
 /// noise that is slow (slow_noise.hpp), they are looked at again without it.
-[[nodiscard]] inline outcome<pluck_diagnosis> diagnose_plucks(const std::vector<pluck_take>& takes,
-                                                              const std::vector<pluck_take>& held, const pluck_guess& guess,
-                                                              const pluck_options& options,
-                                                              const detail::effects_for& catalogue_for, int most_effects = 3) {
+template <class = void>
+[[nodiscard]] outcome<pluck_diagnosis> diagnose_plucks(const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held,
+                                                       const pluck_guess& guess, const pluck_options& options,
+                                                       const detail::effects_for& catalogue_for, int most_effects = 3) {
   auto d = detail::diagnose_as_recorded(takes, held, guess, options, catalogue_for, most_effects);
   if (!d) return d;
   const auto cleaned = d->mismatched ? without_slow_noise(*d, held) : std::nullopt;
@@ -159,10 +167,14 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   again->slow_noise = cleaned->over;
   return detail::concluded(*std::move(again));
 }
+ROSIN_INSTANTIATE(outcome<pluck_diagnosis> diagnose_plucks(const std::vector<pluck_take>&, const std::vector<pluck_take>&,
+                                                           const pluck_guess&, const pluck_options&, const detail::effects_for&,
+                                                           int))
 
 /// The catalogue without what the declared model already contains.
-[[nodiscard]] inline std::vector<pluck_effect> catalogue_without(const std::vector<std::string>& physics,
-                                                                 const string_facts& facts, const band& limits) {
+template <class = void>
+[[nodiscard]] std::vector<pluck_effect> catalogue_without(const std::vector<std::string>& physics, const string_facts& facts,
+                                                          const band& limits) {
   std::vector<pluck_effect> all = pluck_effects(facts);
   for (const int channel : {0, 1})
     for (const bending where : {bending::behind_ringing, bending::before_ringing})
@@ -176,5 +188,6 @@ using effects_for = std::function<std::vector<pluck_effect>(const pluck_fit_resu
   std::erase_if(all, [&](const pluck_effect& e) { return std::find(physics.begin(), physics.end(), e.name) != physics.end(); });
   return all;
 }
+ROSIN_INSTANTIATE(std::vector<pluck_effect> catalogue_without(const std::vector<std::string>&, const string_facts&, const band&))
 
 }  // namespace rosin

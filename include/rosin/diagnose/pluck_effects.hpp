@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/hum_effect.hpp>
 #include <rosin/diagnose/wire_effects.hpp>
 
@@ -167,7 +168,8 @@ inline pluck_effect massive_end_effect(const string_facts& f, int end) {
 ///     phase ahead = c (q d) - (2 c - 3/2 c^2 + 1/3 c^3) (q d)^3 + ...
 ///
 /// so that pitch, stiffness and place go along.
-inline pluck_effect clamped_end_effect(const string_facts&, int end) {
+template <class Real = double>
+pluck_effect clamped_end_effect(const string_facts&, int end) {
   pluck_effect e{.name = "clamped-end",
                  .place = end,
                  .at_end = true,
@@ -178,7 +180,7 @@ inline pluck_effect clamped_end_effect(const string_facts&, int end) {
                      if (double& clamping = s.ends[static_cast<std::size_t>(side)].clamping; end < 0 || side == end)
                        clamping = std::min(1.0, clamping + v[0]);
                  }};
-  e.rebase = [end](const pluck_layout& layout, Eigen::VectorXd& v) {
+  e.rebase = [end](const pluck_layout& layout, Eigen::VectorX<Real>& v) {
     const double c = v[v.size() - 1], reach = shortened_by(layout.string(v), 1), ends = end < 0 ? 2 : 1;  // of the old length
     const double less = c * reach, whole = 1 / (1 + ends * less), softer = 2 * ends * reach * c * (2 - c * (1.5 - c / 3));
     v[pluck_layout::fundamental] *= whole;
@@ -191,16 +193,18 @@ inline pluck_effect clamped_end_effect(const string_facts&, int end) {
   if (end < 0) e.variant = "both";
   return e;
 }
+ROSIN_INSTANTIATE(pluck_effect clamped_end_effect(const string_facts&, int))
 
 /// Both channels pass a first-order high-pass. What the held string gave was taken for part of the offset.
-inline pluck_effect ac_coupling_effect(const string_facts&) {
+template <class Real = double>
+pluck_effect ac_coupling_effect(const string_facts&) {
   pluck_effect e{.name = "ac-coupling",
                  .parameters = {{"cutoff_Hz", 0.005, 200, 1e-5, true}},
                  .starts = {{0.02}, {0.1}, {0.5}, {2}, {8}, {25}, {70}},
                  .strength = -1,
                  .apply = [](pluck_scene& s, const double* v, int) { s.sensors[0].corner_Hz = s.sensors[1].corner_Hz = v[0]; }};
   e.shrinks_with = 0;
-  e.rebase = [](const pluck_layout& layout, Eigen::VectorXd& v) {
+  e.rebase = [](const pluck_layout& layout, Eigen::VectorX<Real>& v) {
     for (std::size_t t = 0; t < layout.takes(); ++t)
       for (std::size_t c = 0; c < 2; ++c)
         v[layout.at(t, pluck_layout::offset_near + static_cast<int>(c))] += std::exp(v[layout.at(t, pluck_layout::strength)]) *
@@ -209,6 +213,7 @@ inline pluck_effect ac_coupling_effect(const string_facts&) {
   };
   return e;
 }
+ROSIN_INSTANTIATE(pluck_effect ac_coupling_effect(const string_facts&))
 
 /// The transducer's own resonance.
 inline pluck_effect sensor_resonance_effect(const string_facts& f, int channel) {
@@ -248,7 +253,8 @@ inline pluck_effect crosstalk_effect(const string_facts&) {
 }
 
 /// All of them, in the order of the format. `physics`: names that the declared model already contains.
-[[nodiscard]] inline std::vector<pluck_effect> pluck_effects(const string_facts& f) {
+template <class = void>
+[[nodiscard]] std::vector<pluck_effect> pluck_effects(const string_facts& f) {
   std::vector<pluck_effect> all{
       bending_stiffness_effect(f), internal_loss_effect(f), air_loss_effect(f), polarisation_effect(f), point_mass_effect(f),
       point_damper_effect(f),      ac_coupling_effect(f),   skew_effect(f),     crosstalk_effect(f),    slow_release_effect(f),
@@ -264,5 +270,6 @@ inline pluck_effect crosstalk_effect(const string_facts&) {
   if (f.takes > 1) all.push_back(slow_release_effect(f, true));
   return all;
 }
+ROSIN_INSTANTIATE(std::vector<pluck_effect> pluck_effects(const string_facts&))
 
 }  // namespace rosin

@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_candidates.hpp>
 
 namespace rosin {
@@ -13,7 +14,8 @@ namespace rosin {
 namespace detail {
 
 /// A fit's effects and values without one of them.
-inline scene_fit without(const scene_fit& fit, std::size_t which) {
+template <class = void>
+scene_fit without(const scene_fit& fit, std::size_t which) {
   scene_fit out = fit;
   const Eigen::Index at = fit.first_of(which);
   const auto gone = static_cast<Eigen::Index>(fit.effects[which].parameters.size()), rest = fit.value.size() - at - gone;
@@ -22,6 +24,7 @@ inline scene_fit without(const scene_fit& fit, std::size_t which) {
   out.effects.erase(out.effects.begin() + static_cast<std::ptrdiff_t>(which));
   return out;
 }
+ROSIN_INSTANTIATE(scene_fit without(const scene_fit&, std::size_t))
 
 }  // namespace detail
 

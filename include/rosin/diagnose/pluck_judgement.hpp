@@ -11,6 +11,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_prediction.hpp>
 
 namespace rosin {
@@ -62,7 +63,8 @@ namespace detail {
 
 /// What is real shows in takes that were not fitted, too. Where the loss is causal, made by relaxations that nobody knows one by one,
 /// what is less than such a law may be off by is not real.
-inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<pluck_take>& held, double noise) {
+template <class = void>
+void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<pluck_take>& held, double noise) {
   constexpr double beyond_doubt = 200, least = 3;
   const auto is_real = [&] {
     const bool clear = d.found_gain[d.best.effects.size() - 1] >= beyond_doubt, by_loss = d.data.options.causality;
@@ -82,9 +84,11 @@ inline void drop_what_is_not_predicted(pluck_diagnosis& d, const std::vector<plu
   if (d.best.effects.empty()) d.base = d.best;
   d.mismatched = d.mismatched && !d.best.effects.empty();
 }
+ROSIN_INSTANTIATE(void drop_what_is_not_predicted(pluck_diagnosis&, const std::vector<pluck_take>&, double))
 
 /// What the likeliest models leave of takes that were not fitted, wrong ones with as many parameters among them.
-inline void judge_ranking(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise) {
+template <class = void>
+void judge_ranking(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise) {
   constexpr std::size_t most = 4;
   for (std::size_t i = 0; i < std::min(most, d.ranking.size()); ++i) {
     auto& h = d.ranking[i];
@@ -102,7 +106,8 @@ inline constexpr double most_left_by_several = 2;
 
 /// Before and after on takes that were not fitted, and whether that is an explanation. `noise_seen`: before the releases as well;
 /// much noise that nothing else bears out may be what the model leaves.
-inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool noise_seen, bool modulated) {
+template <class = void>
+void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, double noise, bool noise_seen, bool modulated) {
   constexpr double much_noise = 0.05;
   const double most_left = d.best.effects.size() > 1 ? most_left_by_several : 6;  // of the floor
   const bool brief = d.best.falls_short();
@@ -126,6 +131,7 @@ inline void judge(pluck_diagnosis& d, const std::vector<pluck_take>& judged, dou
   d.explained = !d.mismatched || (complete && !d.best.effects.empty());
   d.mismatched = d.mismatched && !(d.explained && d.has_ordinary_effects_only());
 }
+ROSIN_INSTANTIATE(void judge(pluck_diagnosis&, const std::vector<pluck_take>&, double, bool, bool))
 
 /// What does not explain is no part of the answer where it leaves too much. Last of all: by a model without it, what it does would
 /// pass for noise.

@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/math/at_once.hpp>
 
@@ -32,8 +33,9 @@ inline double price_of(const scene_fit& f, const std::array<double, 2>& noise) {
 }
 
 /// An effect whose model holds for a short time only stays if over that time it is the best, and worth anything.
-inline void prefer_over_one_horizon(const scene_data& data, const scene_fit& already, std::vector<scene_fit>& fits,
-                                    std::array<double, 2> noise) {
+template <class = void>
+void prefer_over_one_horizon(const scene_data& data, const scene_fit& already, std::vector<scene_fit>& fits,
+                             std::array<double, 2> noise) {
   const auto brief = std::find_if(fits.begin(), fits.end(), [](const scene_fit& f) { return f.horizon_periods < 1e8; });
   if (brief == fits.end()) return;
   constexpr double worth_anything = 28, apart = 6;
@@ -61,12 +63,13 @@ inline std::optional<Eigen::VectorXd> mirrored(const scene_fit& fit) {
 
 /// An effect that leaves more than noise once more from the first periods on, in small steps, and from its mirror image: over all of
 /// the record the fit may have come to rest with partials a little off.
-inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<double, 2> noise) {
+template <class Real = double>
+scene_fit rewound(const scene_data& data, scene_fit fit, std::array<double, 2> noise) {
   std::vector<fit_stage> stages;
   for (double periods = 1.5; periods < std::min(100.0, fit.horizon_periods); periods *= 2)
     stages.push_back({1000, periods, true});
   stages.push_back({1000, fit.horizon_periods, true, freedom::all});
-  std::vector<Eigen::VectorXd> from{fit.value};
+  std::vector<Eigen::VectorX<Real>> from{fit.value};
   if (auto other = mirrored(fit)) from.push_back(*std::move(other));
   std::vector<scene_fit> again(from.size());
   at_once(from.size(), data.options.threads,
@@ -75,10 +78,11 @@ inline scene_fit rewound(const scene_data& data, scene_fit fit, std::array<doubl
     if (cost_of(other, noise) < cost_of(fit, noise)) fit = std::move(other);
   return fit;
 }
+ROSIN_INSTANTIATE(scene_fit rewound(const scene_data&, scene_fit, std::array<double, 2>))
 
 /// The best first; that one once more from the first periods on where it leaves more than noise.
-inline void put_in_order(const scene_data& data, const scene_fit& already, std::vector<scene_fit>& fits,
-                         std::array<double, 2> noise) {
+template <class = void>
+void put_in_order(const scene_data& data, const scene_fit& already, std::vector<scene_fit>& fits, std::array<double, 2> noise) {
   std::sort(fits.begin(), fits.end(), [&](const auto& a, const auto& b) { return price_of(a, noise) < price_of(b, noise); });
   if (!fits.empty() && fits.front().quality.inflation() > 1.5 && !fits.front().effects.back().seek)
     fits.front() = rewound(data, std::move(fits.front()), noise);

@@ -7,6 +7,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/diagnose/pluck_exchange.hpp>
 
@@ -48,8 +49,8 @@ inline std::array<double, 2> band_of(const Eigen::VectorXd& r, double rate_Hz) {
 }
 
 /// Channel (of those that are asked), quarter period and band in which the residual of the first periods is largest.
-inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, double noise,
-                             std::array<bool, 2> asked = {true, true}) {
+template <class = void>
+pluck_mismatch locate(const scene_data& data, const scene_fit& base, double noise, std::array<bool, 2> asked = {true, true}) {
   const auto problem = data.problem(base.effects, base.value, {1000, base.horizon_periods, true, freedom::all}, {1, 1});
   pluck_mismatch m;
   double most = 0, power = 0, count = 0;
@@ -72,6 +73,7 @@ inline pluck_mismatch locate(const scene_data& data, const scene_fit& base, doub
   m.residual_over_noise = std::sqrt(power / std::max(1.0, count)) / noise;
   return m;
 }
+ROSIN_INSTANTIATE(pluck_mismatch locate(const scene_data&, const scene_fit&, double, std::array<bool, 2>))
 
 /// A take that was not fitted, by the model of those that were.
 struct seen_take {
@@ -80,16 +82,20 @@ struct seen_take {
   fit_stage stage;          ///< what was looked at in the end
   std::size_t nearest = 0;  ///< of those that were fitted, the one at the nearest place
 
-  [[nodiscard]] line_problem<scene_plucks> problem() const { return data.problem(fit.effects, fit.value, stage, {1, 1}); }
+  template <class = void>
+  [[nodiscard]] line_problem<scene_plucks> problem() const {
+    return data.problem(fit.effects, fit.value, stage, {1, 1});
+  }
 };
 
 /// By its first `most_periods`; nothing where no release is found. `most`: freedom::release_only where the place is exact.
-inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit, const pluck_take& held,
-                                    double most_periods = 1e9, freedom most = freedom::release_and_place) {
+template <class Real = double>
+std::optional<seen_take> see(const scene_data& data, const scene_fit& fit, const pluck_take& held, double most_periods = 1e9,
+                             freedom most = freedom::release_and_place) {
   seen_take out{{{held}, data.guess, data.options, pluck_layout({held}, data.options, data.guess.ends)}, {}, {}, 0};
   const auto start = find_start(out.data.takes, data.guess);
   if (!start) return std::nullopt;
-  Eigen::VectorXd v(out.data.layout.size());
+  Eigen::VectorX<Real> v(out.data.layout.size());
   v.head(pluck_layout::first_position) = fit.value.head(pluck_layout::first_position);
   std::size_t& nearest = out.nearest;
   for (std::size_t t = 1; t < data.takes.size(); ++t)
@@ -133,10 +139,12 @@ inline std::optional<seen_take> see(const scene_data& data, const scene_fit& fit
     fit_with(freedom::release_only);
   return out;
 }
+ROSIN_INSTANTIATE(std::optional<seen_take> see(const scene_data&, const scene_fit&, const pluck_take&, double, freedom))
 
 /// Of a take that was not fitted: rms residual / rms recorded; the noise's share; samples.
-inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise,
-                                       freedom most = freedom::release_and_place) {
+template <class = void>
+std::array<double, 3> predicted(const scene_data& data, const scene_fit& fit, const pluck_take& held, double noise,
+                                freedom most = freedom::release_and_place) {
   const auto seen = see(data, fit, held, 1e9, most);
   if (!seen) return {1, 0, 0};
   const auto problem = seen->problem();
@@ -146,11 +154,13 @@ inline std::array<double, 3> predicted(const scene_data& data, const scene_fit& 
   const double mean_square = (seen->fit.quality.samples[0] + seen->fit.quality.samples[1]) / std::max(1.0, samples);
   return {seen->fit.quality.residual_ratio[0], noise * std::sqrt(mean_square * samples / std::max(1e-300, power)), samples};
 }
+ROSIN_INSTANTIATE(std::array<double, 3> predicted(const scene_data&, const scene_fit&, const pluck_take&, double, freedom))
 
 /// What is left of a series without its mean and slope, squared and summed.
-[[nodiscard]] inline double power_without_trend(const Eigen::VectorXd& x) {
+template <class Real = double>
+[[nodiscard]] double power_without_trend(const Eigen::VectorXd& x) {
   if (x.size() < 3) return 0;
-  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(x.size(), -1, 1), level = x.array() - x.mean();
+  const Eigen::VectorX<Real> t = Eigen::VectorX<Real>::LinSpaced(x.size(), -1, 1), level = x.array() - x.mean();
   return (level - t * (t.dot(level) / t.squaredNorm())).squaredNorm();
 }
 
@@ -161,7 +171,8 @@ struct seen_noise {
 };
 
 /// What the recordings show before the release beside the steady force; nothing where that is too short.
-inline seen_noise noise_before_release(const scene_data& data, const scene_fit& fit) {
+template <class = void>
+seen_noise noise_before_release(const scene_data& data, const scene_fit& fit) {
   constexpr double least_samples = 30;
   const auto problem = data.problem(fit.effects, fit.value, {1000, fit.horizon_periods, true, freedom::all}, {1, 1});
   std::array<double, 2> power{};
@@ -177,6 +188,7 @@ inline seen_noise noise_before_release(const scene_data& data, const scene_fit& 
   for (std::size_t c = 0; c < 2; ++c) out.rms_N[c] = std::sqrt(power[c] / out.samples);
   return out;
 }
+ROSIN_INSTANTIATE(seen_noise noise_before_release(const scene_data&, const scene_fit&))
 
 /// What modulates partials - a clock that is not steady, bursts - passes for noise among the lines, but not before the release.
 /// By three tenths, and four standard deviations of what was seen there; by four tenths where slow noise was taken out: some of it stays
@@ -194,8 +206,8 @@ inline seen_noise noise_before_release(const scene_data& data, const scene_fit& 
 struct held_out_worth {
   double gain = 0, taken = 0;
 };
-inline held_out_worth held_out_gain(const scene_data& data, const scene_fit& fit, const std::vector<pluck_take>& held,
-                                    double noise) {
+template <class = void>
+held_out_worth held_out_gain(const scene_data& data, const scene_fit& fit, const std::vector<pluck_take>& held, double noise) {
   scene_fit less = without(fit, fit.effects.size() - 1);
   less = fit_scene(data, less.effects, less.value, {{1000, fit.horizon_periods, true, data.compared()}}, {noise, noise});
   less.horizon_periods = fit.horizon_periods;

@@ -24,6 +24,7 @@ class pluck_score {
 public:
   using problem = line_problem<scene_plucks>;
 
+  template <class = void>
   pluck_score(const problem& fitted, const Eigen::VectorXd& value) : problem_{fitted}, value_{value} {
     const normal_equations eq = fitted.linearise(value);
     solver_.compute(eq.hessian);
@@ -33,8 +34,9 @@ public:
   }
 
   /// The effect at one of its starting points (physical values).
+  template <class Real = double>
   [[nodiscard]] score_result operator()(const scene_plucks& with, const std::vector<double>& start) const {
-    Eigen::VectorXd v(with.size());
+    Eigen::VectorX<Real> v(with.size());
     v.head(value_.size()) = value_;
     for (std::size_t i = 0; i < start.size(); ++i) {
       const Eigen::Index p = value_.size() + static_cast<Eigen::Index>(i);
@@ -42,7 +44,7 @@ public:
     }
     if (const auto& rebase = with.effects().back().rebase) rebase(with, v);
     double dr = 0, dd = 0;
-    Eigen::VectorXd dJ = Eigen::VectorXd::Zero(value_.size());
+    Eigen::VectorX<Real> dJ = Eigen::VectorX<Real>::Zero(value_.size());
     for (std::size_t t = 0; t < views_.size(); ++t) {
       const auto& s = problem_.part(t, 1);
       if (s.count() == 0) continue;
@@ -58,12 +60,13 @@ public:
   struct column_score : score_result {
     double sd = 0;
   };
+  template <class Real = double>
   [[nodiscard]] column_score of_columns(const std::vector<std::array<Eigen::VectorXd, 2>>& columns) const {
     double dr = 0, dd = 0;
-    Eigen::VectorXd dJ = Eigen::VectorXd::Zero(value_.size());
+    Eigen::VectorX<Real> dJ = Eigen::VectorX<Real>::Zero(value_.size());
     for (std::size_t t = 0; t < views_.size(); ++t)
       for (std::size_t c = 0; c < 2; ++c) {
-        const Eigen::VectorXd& d = columns[t][c];
+        const Eigen::VectorX<Real>& d = columns[t][c];
         if (d.size() == 0) continue;
         const double sure = 1 / std::pow(problem_.noise()[c], 2), step_s = 1 / problem_.rate_Hz(t);
         dr += sure * d.dot(views_[t].residual[c]);
@@ -84,6 +87,7 @@ private:
     std::array<Eigen::MatrixXd, 2> to, to_gram;  // P x 4N
   };
 
+  template <class Real = double>
   [[nodiscard]] view view_of(std::size_t t) const {
     const auto& s = problem_.part(t, 1);
     view w;
@@ -94,8 +98,8 @@ private:
     w.to = problem_.sensitivities(value_, t, 1, w.lines);
     const auto p = problem_.project(s, problem_.rate_Hz(t), w.lines);
     for (std::size_t c = 0; c < 2; ++c) {
-      const Eigen::MatrixXd flat = p.onto_lines[c].transpose();
-      w.onto[c] = Eigen::Map<const Eigen::VectorXd>(flat.data(), flat.size());
+      const Eigen::MatrixX<Real> flat = p.onto_lines[c].transpose();
+      w.onto[c] = Eigen::Map<const Eigen::VectorX<Real>>(flat.data(), flat.size());
       w.residual[c] = p.residual.col(static_cast<Eigen::Index>(c));
       w.to_gram[c] = w.to[c] * w.gram;
     }
@@ -103,6 +107,7 @@ private:
   }
 
   /// d' gram d of both channels' changes in one pass over half of the matrix, which does not stay in the cache.
+  template <class = void>
   [[nodiscard]] static Eigen::Array2d power_of(const Eigen::MatrixXd& gram, const Eigen::MatrixX2d& d) {
     Eigen::Array2d power = Eigen::Array2d::Zero();
     for (Eigen::Index k = 0; k < d.rows(); ++k)
@@ -113,6 +118,7 @@ private:
   }
 
   /// sum_k z^k r_k by Horner's rule, for every eighth sample at a time.
+  template <class = void>
   [[nodiscard]] static std::complex<double> against(const Eigen::VectorXd& r, std::complex<double> one_step) {
     constexpr Eigen::Index lanes = 8;
     using lane_array = Eigen::Array<double, lanes, 1>;
@@ -131,10 +137,12 @@ private:
   }
 
   /// Products of a series with the basis of damped_lines.hpp.
+  template <class = void>
   [[nodiscard]] static Eigen::VectorXd onto(const std::vector<damped_line>& lines, const Eigen::VectorXd& x, double step_s) {
     return line_runner(lines, step_s).products(x).front().transpose().reshaped();
   }
 
+  template <class Real = double>
   void add(const view& w, const std::vector<damped_line>& changed, std::size_t take, double& dr, double& dd,
            Eigen::VectorXd& dJ) const {
     const double step_s = 1 / problem_.rate_Hz(take),
@@ -188,7 +196,7 @@ private:
     const Eigen::MatrixX2d crosses = cross_gram(w, fresh, steps, step_s, count);
     const Eigen::Array2d power = power_of(w.gram, d);
     for (std::size_t c = 0; c < 2; ++c) {
-      const Eigen::VectorXd own = d.col(static_cast<Eigen::Index>(c)), cross = crosses.col(static_cast<Eigen::Index>(c));
+      const Eigen::VectorX<Real> own = d.col(static_cast<Eigen::Index>(c)), cross = crosses.col(static_cast<Eigen::Index>(c));
       const double sure = 1 / std::pow(problem_.noise()[c], 2);
       dr += sure * own.dot(w.onto[c]);
       dd += sure * (power[static_cast<Eigen::Index>(c)] + 2 * own.dot(cross));
@@ -221,6 +229,7 @@ private:
   }
 
   /// Products of new lines with the basis of the view, channel by channel.
+  template <class = void>
   [[nodiscard]] static Eigen::MatrixX2d cross_gram(const view& w, const std::vector<damped_line>& fresh,
                                                    const std::vector<line_steps>& steps, double step_s, std::size_t count) {
     Eigen::MatrixX2d out = Eigen::MatrixX2d::Zero(4 * static_cast<Eigen::Index>(w.lines.size()), 2);

@@ -18,6 +18,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_judgement.hpp>
 
 namespace rosin {
@@ -37,8 +38,9 @@ inline int free_parameters(const scene_fit& f) {
 }
 
 /// The share of a mismatch's power that the best of `fits` leaves, as far as it looks.
-inline double share_left(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits,
-                         std::array<double, 2> noise) {
+template <class = void>
+double share_left(const scene_data& data, const scene_fit& before, const std::vector<scene_fit>& fits,
+                  std::array<double, 2> noise) {
   if (fits.empty()) return 1;
   const scene_fit plain =
       fit_scene(data, before.effects, before.value, {{1000, fits.front().horizon_periods, true, data.compared()}}, noise);
@@ -63,6 +65,7 @@ struct search_memory {
 /// Adds effects to the declared model one by one, as long as it is worth it.
 class effect_search {
 public:
+  template <class = void>
   effect_search(pluck_diagnosis& d, const std::vector<pluck_effect>& all, search_memory& memory)
       : d_{d}, all_{all}, memory_{memory}, weigh_{d.declared.noise_N} {
     now_.value = d.declared.value, now_.sd = d.declared.sd, now_.covariance = d.declared.covariance;
@@ -71,6 +74,7 @@ public:
     if (d.data.layout.has_ends()) correct_ends();
   }
 
+  template <class = void>
   void run(int most_effects) {
     const auto found = [&] { return static_cast<int>(now_.effects.size()); };
     while (found() < most_effects && add_one(found()) && !memory_.is_hopeless(now_)) {
@@ -98,11 +102,13 @@ private:
     double temper = 1, gain = 0, left = 0, was = 0, samples = 0;
   };
   /// Declared terminations, as far off as they may be: what takes them further is none of theirs.
+  template <class = void>
   void correct_ends() {
     scene_fit tried = fit_scene(d_.data, {}, now_.value, {{1000, 1e9, true, freedom::all}}, weigh_);
     if (d_.data.layout.ends_within_doubt(tried.value)) now_ = std::move(tried);
   }
   /// They count as an effect that was found: what their motion does, over so many periods, is what there was to explain.
+  template <class = void>
   [[nodiscard]] scene_fit without_ends(double periods) const {
     scene_data rigid{d_.data.takes, d_.data.guess, d_.data.options, pluck_layout(d_.data.takes, d_.data.options)};
     rigid.guess.ends = {};
@@ -123,6 +129,7 @@ private:
   }
 
   /// Each effect alone is tried once only, whatever a search leaves out.
+  template <class = void>
   [[nodiscard]] std::vector<scene_fit> remembered(const std::vector<pluck_effect>& catalogue) const {
     std::vector<scene_fit> fits = memory_.first;
     std::erase_if(fits, [&](const scene_fit& f) {
@@ -131,6 +138,7 @@ private:
     put_in_order(d_.data, now_, fits, weigh_);
     return fits;
   }
+  template <class = void>
   [[nodiscard]] std::vector<scene_fit> candidates(int round) {
     const std::vector<pluck_effect> catalogue = still_to_add(all_, now_.effects);
     const bool begins = round == 0 && d_.data.most_periods > 1e8;
@@ -140,6 +148,7 @@ private:
     if (begins && memory_.first.empty()) memory_.first = fits;
     return fits;
   }
+  template <class = void>
   [[nodiscard]] std::vector<scene_fit> newly_tried(const std::vector<pluck_effect>& catalogue, int round) const {
     const bool strong =
         round == 0 ? now_.horizon_periods < 1e8 || now_.quality.residual_ratio[0] > 0.05 : now_.quality.residual_ratio[0] > 0.1;
@@ -153,6 +162,7 @@ private:
     std::vector<scene_fit> again = one_more_effect(d_.data, now_, catalogue, true, weigh_, memory_.starts);
     return !again.empty() && share_left(d_.data, now_, again, weigh_) < left ? again : fits;
   }
+  template <class = void>
   void leave_alone() {
     d_.base = fit_scene(d_.data, {}, now_.value, {{1000, now_.horizon_periods, true, freedom::all}}, weigh_);
     noise_ = d_.base.quality.noise;
@@ -195,6 +205,7 @@ private:
     weigh_ = noise_;  // by the declared model's, all that is left beside something strong would pass for noise
   }
   /// Whether one was found and another may follow.
+  template <class = void>
   bool add_one(int round) {
     const std::vector<scene_fit> fits = candidates(round);
     if (fits.empty()) {
@@ -223,6 +234,7 @@ private:
     return round == 0 || now_.quality.inflation() != 1.0;
   }
   /// Two that take away too little each, as the other hides what they do, may be worth it together: to a ninth.
+  template <class = void>
   bool add_with_another(const std::vector<scene_fit>& first, const comparison& alone) {
     const scene_fit as_was = now_;
     now_ = first.front();
@@ -254,8 +266,9 @@ using search_result = std::pair<pluck_diagnosis, double>;
 
 /// `d`, searched, and the noise. What is a doubtful beginning is kept unless a search that begins otherwise leaves a ninth: one of
 /// the first periods, where that finds an effect whose model holds no longer; one without it.
-[[nodiscard]] inline search_result searched(const pluck_diagnosis& d, std::vector<pluck_effect> all, int most_effects,
-                                            search_memory& memory, bool once_more = true) {
+template <class = void>
+[[nodiscard]] search_result searched(const pluck_diagnosis& d, std::vector<pluck_effect> all, int most_effects,
+                                     search_memory& memory, bool once_more = true) {
   search_result out{d, 0};
   effect_search search(out.first, all, memory);
   search.run(most_effects);
@@ -278,6 +291,7 @@ using search_result = std::pair<pluck_diagnosis, double>;
   auto other = searched(d, std::move(all), most_effects, memory, false);
   return leaves_a_ninth(other) ? other : out;
 }
+ROSIN_INSTANTIATE(search_result searched(const pluck_diagnosis&, std::vector<pluck_effect>, int, search_memory&, bool))
 
 }  // namespace detail
 

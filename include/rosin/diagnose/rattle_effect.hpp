@@ -15,6 +15,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/diagnose/odd_pluck.hpp>
 #include <rosin/diagnose/rattling_string.hpp>
@@ -26,12 +27,12 @@ namespace rosin {
 namespace detail {
 
 /// The record whose damped spectrum this is.
-[[nodiscard]] inline Eigen::VectorXd undamped(const damped_line_of_frequencies& line,
-                                              std::vector<std::complex<double>> spectrum) {
+template <class Real = double>
+[[nodiscard]] Eigen::VectorXd undamped(const damped_line_of_frequencies& line, std::vector<std::complex<double>> spectrum) {
   spectrum.resize(line.samples / 2 + 1, 0.0);
   std::vector<double> weighted(line.samples);
   eigen_fft<double>(line.samples).inverse(spectrum.data(), weighted.data());
-  Eigen::VectorXd x(static_cast<Eigen::Index>(line.samples));
+  Eigen::VectorX<Real> x(static_cast<Eigen::Index>(line.samples));
   for (std::size_t n = 0; n < line.samples; ++n)
     x[static_cast<Eigen::Index>(n)] =
         weighted[n] * line.rate_Hz * std::exp(line.sigma_per_s * static_cast<double>(n) / line.rate_Hz);
@@ -50,7 +51,8 @@ struct foretold {
 
 /// Release and strength from what precedes the release and less than half a period behind it, before the string can have swung
 /// over, then with the place from what no force on the string changes.
-inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_take& take) {
+template <class Real = double>
+std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_take& take) {
   constexpr double untouched = 0.45;
   auto seen = see(d.data, d.best, take, untouched, freedom::release_only);
   if (!seen) return std::nullopt;
@@ -61,7 +63,7 @@ inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_ta
   descend_from_places({seen->data, seen->fit.value, place, free, d.best.quality.noise}, seen->fit);
   seen->stage.free = free;
   const auto problem = seen->problem();
-  const Eigen::VectorXd& v = seen->fit.value;
+  const Eigen::VectorX<Real>& v = seen->fit.value;
   const pluck_layout& layout = seen->data.layout;
   foretold out;
   out.left = left_by(problem, v, 0);
@@ -75,13 +77,14 @@ inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_ta
 
 /// Where a stop begins that yields and damps, y = gap + f / stiffness - (resistance / stiffness) dy/dt, by weighted least squares over
 /// where it is touched, and what that leaves of y, rms.
-[[nodiscard]] inline std::pair<double, double> stop_of(const Eigen::VectorXd& force_N, const Eigen::VectorXd& rise_m,
-                                                       const Eigen::VectorXd& weight) {
+template <class Real = double>
+[[nodiscard]] std::pair<double, double> stop_of(const Eigen::VectorXd& force_N, const Eigen::VectorXd& rise_m,
+                                                const Eigen::VectorXd& weight) {
   std::vector<Eigen::Index> touched;
   for (Eigen::Index i = 1; i + 1 < weight.size(); ++i)
     if (weight[i] > 0.01 * weight.maxCoeff()) touched.push_back(i);
-  Eigen::MatrixXd law(static_cast<Eigen::Index>(touched.size()), 3);
-  Eigen::VectorXd rise(law.rows());
+  Eigen::MatrixX<Real> law(static_cast<Eigen::Index>(touched.size()), 3);
+  Eigen::VectorX<Real> rise(law.rows());
   for (Eigen::Index k = 0; k < law.rows(); ++k) {
     const Eigen::Index i = touched[static_cast<std::size_t>(k)];
     law.row(k) = std::sqrt(weight[i]) * Eigen::RowVector3d{1, force_N[i], rise_m[i + 1] - rise_m[i - 1]};
@@ -89,7 +92,7 @@ inline std::optional<foretold> foretell(const pluck_diagnosis& d, const pluck_ta
   }
   if (law.rows() == 0) return {0, 1e300};
   if (law.rows() < 8) law.rightCols(2).setZero();  // too brief to tell a stop that yields from a wall
-  const Eigen::VectorXd found = law.completeOrthogonalDecomposition().solve(rise);
+  const Eigen::VectorX<Real> found = law.completeOrthogonalDecomposition().solve(rise);
   return {found[0], (rise - law * found).norm() / law.col(0).norm()};
 }
 
@@ -99,7 +102,8 @@ struct obstacle_motion {
   std::array<Eigen::VectorXd, 2> at_ends_N;  ///< what the force makes of the recordings
 };
 
-inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns_m) {
+template <class = void>
+obstacle_motion at_place(const foretold& t, double x, double impedance_Ns_m) {
   const auto& r = t.left.force_N;
   damped_line_of_frequencies line =
       place_search::line_over(static_cast<std::size_t>(r[0].size()), t.left.rate_Hz, t.limits.stop_Hz);
@@ -124,11 +128,13 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
   }
   return {undamped(line, force), undamped(line, rise), {undamped(line, at_ends[0]), undamped(line, at_ends[1])}};
 }
+ROSIN_INSTANTIATE(obstacle_motion at_place(const foretold&, double, double))
 
 }  // namespace detail
 
 /// Whether a pluck that contradicts the others met an obstacle. impedance_Ns_m: the string's.
-[[nodiscard]] inline std::optional<rattle> find_rattle(const odd_pluck& odd, double impedance_Ns_m) {
+template <class Real = double>
+[[nodiscard]] std::optional<rattle> find_rattle(const odd_pluck& odd, double impedance_Ns_m) {
   // twist: where wire and stop hold the surface, it is further aside than the string, whose motion this is, by that share of the gap
   constexpr double least_one_sided = 0.8, most_spread = 0.1, twist = 0.035;
   auto t = detail::foretell(odd.others, odd.take);
@@ -138,15 +144,15 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
   rattle out;
   out.place = search();
   if (out.place.on != acting::on_string || !search.is_mismatch() || !search.is_accounted_for(out.place)) return std::nullopt;
-  const Eigen::VectorXd moved = search.nuisances(out.place);
+  const Eigen::VectorX<Real> moved = search.nuisances(out.place);
   for (std::size_t c = 0; c < 2; ++c)
     for (Eigen::Index k = 0; k < moved.size(); ++k)
       t->left.force_N[c] -= moved[k] * t->left.nuisances[static_cast<std::size_t>(k)][c];
   const detail::obstacle_motion at = detail::at_place(*t, out.place.position, impedance_Ns_m);
   const Eigen::Index used = at.force_N.size() / 2;  // the last of what is undamped is noise
-  const Eigen::VectorXd f = at.force_N.head(used), y = at.rise_m.head(used);
+  const Eigen::VectorX<Real> f = at.force_N.head(used), y = at.rise_m.head(used);
   const double up = f.cwiseMax(0).squaredNorm(), down = f.cwiseMin(0).squaredNorm(), side = up > down ? -1 : 1;  // the obstacle's
-  const Eigen::VectorXd weight = (-side * f).cwiseMax(0).array().square();
+  const Eigen::VectorX<Real> weight = (-side * f).cwiseMax(0).array().square();
   out.one_sided = std::max(up, down) / (up + down);
   double spread = 0;
   std::tie(out.gap_m, spread) = detail::stop_of(f, y, weight);
@@ -168,11 +174,13 @@ inline obstacle_motion at_place(const foretold& t, double x, double impedance_Ns
     return std::nullopt;
   return out;
 }
+ROSIN_INSTANTIATE(std::optional<rattle> find_rattle(const odd_pluck&, double))
 
 namespace detail {
 
 /// The obstacle, if all plucks that contradict the others met one and the same.
-[[nodiscard]] inline std::optional<rattle> met_by_all(const odd_pluck& odd, double impedance_Ns_m) {
+template <class = void>
+[[nodiscard]] std::optional<rattle> met_by_all(const odd_pluck& odd, double impedance_Ns_m) {
   constexpr double most_apart = 0.01, sure = 3;
   const auto first = find_rattle(odd, impedance_Ns_m);
   const bool alike = first && std::all_of(odd.also.begin(), odd.also.end(), [&](const pluck_take& take) {
@@ -197,7 +205,8 @@ namespace detail {
 
 /// The strongest of three plucks or more and the next ones, or the stronger of two, where they met the same obstacle and the softer ones, diagnosed by
 /// themselves, leave nothing unexplained. For what no single odd one (odd_pluck.hpp) accounts for.
-[[nodiscard]] inline std::optional<odd_pluck> find_rattling_plucks(
+template <class = void>
+[[nodiscard]] std::optional<odd_pluck> find_rattling_plucks(
     const std::vector<pluck_take>& takes, const std::vector<pluck_take>& held, const pluck_guess& guess,
     const pluck_options& options, const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>& catalogue_for,
     double impedance_Ns_m) {
@@ -216,11 +225,15 @@ namespace detail {
   }
   return std::nullopt;
 }
+ROSIN_INSTANTIATE(std::optional<odd_pluck> find_rattling_plucks(
+    const std::vector<pluck_take>&, const std::vector<pluck_take>&, const pluck_guess&, const pluck_options&,
+    const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>&, double))
 
 /// At least two plucks, all of which met the same obstacle: the string is told by what no force at one place changes of the softest.
-[[nodiscard]] inline std::optional<odd_pluck> find_rattling_string(const std::vector<pluck_take>& takes,
-                                                                   const std::vector<pluck_take>& held, const pluck_guess& guess,
-                                                                   const pluck_options& options, double impedance_Ns_m) {
+template <class = void>
+[[nodiscard]] std::optional<odd_pluck> find_rattling_string(const std::vector<pluck_take>& takes,
+                                                            const std::vector<pluck_take>& held, const pluck_guess& guess,
+                                                            const pluck_options& options, double impedance_Ns_m) {
   const std::vector<pluck_take> all = detail::by_strength(takes, held);
   if (all.size() < 2) return std::nullopt;
   const pluck_layout layout({all.back()}, options, guess.ends);
@@ -238,5 +251,7 @@ namespace detail {
   odd->met = detail::met_by_all(*odd, impedance_Ns_m);
   return odd->met ? odd : std::nullopt;
 }
+ROSIN_INSTANTIATE(std::optional<odd_pluck> find_rattling_string(const std::vector<pluck_take>&, const std::vector<pluck_take>&,
+                                                                const pluck_guess&, const pluck_options&, double))
 
 }  // namespace rosin

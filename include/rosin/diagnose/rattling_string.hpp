@@ -12,6 +12,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/diagnose/pluck_prediction.hpp>
 
@@ -60,7 +61,8 @@ struct begun_take {
 };
 
 /// `over`: by how much noise, and all that the model does not yet tell, exceeds the noise.
-inline across_a_place look_across(const begun_take& take, const scene_fit& fit, double periods, double over) {
+template <class = void>
+across_a_place look_across(const begun_take& take, const scene_fit& fit, double periods, double over) {
   const auto problem = take.data.problem(fit.effects, fit.value, {1000, periods, true, take.free}, {1, 1});
   auto left = left_by(problem, fit.value, 0);
   for (const Eigen::Index p : left.parameters)
@@ -78,7 +80,8 @@ inline across_a_place look_across(const begun_take& take, const scene_fit& fit, 
 }
 
 /// From a fit that has begun to one with as little left across as can be. `over`: of what it begins with.
-inline across_a_place descend_across(const begun_take& take, scene_fit& fit, double periods, double over, double settled) {
+template <class = void>
+across_a_place descend_across(const begun_take& take, scene_fit& fit, double periods, double over, double settled) {
   constexpr int most_rounds = 20;
   constexpr double least_share = 0.02;
   const scene_plucks model(take.data.layout, take.data.guess.ac_coupled_Hz, fit.effects, take.free);
@@ -100,7 +103,8 @@ inline across_a_place descend_across(const begun_take& take, scene_fit& fit, dou
 
 /// By the first periods, then by all. From three places of the pluck, where its place is free, and in either half of the string, as
 /// long as more than noise is left: few samples of a short string precede its first contact, and a force has a mirror image.
-inline across_a_place descend_from_places(begun_take take, scene_fit& fit) {
+template <class = void>
+across_a_place descend_from_places(begun_take take, scene_fit& fit) {
   constexpr double as_good_as_noise = 1.5, much = 100, roughly = 1e-2, well = 1e-4;
   const Eigen::Index at = take.data.layout.position(0);
   const scene_fit begun = fit;
@@ -120,9 +124,11 @@ inline across_a_place descend_from_places(begun_take take, scene_fit& fit) {
   take.within = {0, 1};
   return descend_across(take, fit, rattling_periods, std::max(1.0, least), well);
 }
+ROSIN_INSTANTIATE(across_a_place descend_from_places(begun_take, scene_fit&))
 
 /// The string as declared, release and strength from what precedes the first contact.
-inline std::optional<scene_fit> begun_as_declared(const scene_data& data) {
+template <class = void>
+std::optional<scene_fit> begun_as_declared(const scene_data& data) {
   scene_fit fit;
   fit.value = data.layout.initial(data.takes, data.guess, data.guess.fundamental_Hz, {0}, {data.takes[0].position});
   fit.horizon_periods = 0.45;
@@ -136,7 +142,8 @@ inline std::optional<scene_fit> begun_as_declared(const scene_data& data) {
 
 /// The declared string fitted to the only take of `data`, whatever a force at one place does to it; nothing where that leaves more than
 /// noise, or where too little precedes the release to tell the noise.
-[[nodiscard]] inline std::optional<scene_fit> fit_past_a_force(const scene_data& data) {
+template <class = void>
+[[nodiscard]] std::optional<scene_fit> fit_past_a_force(const scene_data& data) {
   auto fit = detail::begun_as_declared(data);
   if (!fit) return std::nullopt;
   const detail::seen_noise still = detail::noise_before_release(data, *fit);
@@ -152,5 +159,6 @@ inline std::optional<scene_fit> begun_as_declared(const scene_data& data) {
   fit->covariance.diagonal() = fit->sd.cwiseAbs2();
   return fit;
 }
+ROSIN_INSTANTIATE(std::optional<scene_fit> fit_past_a_force(const scene_data&))
 
 }  // namespace rosin

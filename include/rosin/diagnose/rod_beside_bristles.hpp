@@ -9,6 +9,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick_effects.hpp>
 
 #include <list>
@@ -21,7 +22,8 @@ struct narrow_takes {
   std::list<std::vector<double>> versions;
 };
 
-[[nodiscard]] inline narrow_takes in_band(const std::vector<contact_take>& takes, double edge_Hz) {
+template <class = void>
+[[nodiscard]] narrow_takes in_band(const std::vector<contact_take>& takes, double edge_Hz) {
   narrow_takes out;
   for (contact_take t : takes) {
     const double before_Hz = t.edge_Hz > 0 ? t.edge_Hz : 0.45 * t.rate_Hz;
@@ -48,9 +50,11 @@ struct narrow_takes {
   }
   return out;
 }
+ROSIN_INSTANTIATE(narrow_takes in_band(const std::vector<contact_take>&, double))
 
 /// The rod of a model that has bristles; `of_samples` says of how many, since its band is its own.
-[[nodiscard]] inline contact_hypothesis rod_beside_bristles(const stick_bench& whole, const std::vector<contact_take>& takes) {
+template <class = void>
+[[nodiscard]] contact_hypothesis rod_beside_bristles(const stick_bench& whole, const std::vector<contact_take>& takes) {
   constexpr double edge_Hz = 12e3;
   const narrow_takes low = in_band(takes, edge_Hz);
   stick_bench bench(low.takes, whole.model());
@@ -64,5 +68,6 @@ struct narrow_takes {
   h.of_samples = bench.independent();
   return h;
 }
+ROSIN_INSTANTIATE(contact_hypothesis rod_beside_bristles(const stick_bench&, const std::vector<contact_take>&))
 
 }  // namespace rosin

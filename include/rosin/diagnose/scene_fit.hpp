@@ -7,6 +7,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_fit.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_score.hpp>
 
 namespace rosin {
@@ -73,6 +74,7 @@ struct scene_data {
   [[nodiscard]] freedom compared() const { return layout.has_ends() ? freedom::all : freedom::no_corrections; }
 
   /// The recordings without what effects that are not linear have put in.
+  template <class = void>
   [[nodiscard]] std::vector<pluck_take> undone(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value) const {
     std::vector<pluck_take> out = takes;
     Eigen::Index at = layout.size();
@@ -83,6 +85,7 @@ struct scene_data {
     }
     return out;
   }
+  template <class = void>
   [[nodiscard]] line_problem<scene_plucks> problem(const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value,
                                                    const fit_stage& stage, std::array<double, 2> noise) const {
     return {undone(effects, value),
@@ -99,33 +102,37 @@ struct scene_data {
 };
 
 /// What a fit makes of string, ends, wire and sensors, as the first take shows them.
-[[nodiscard]] inline pluck_scene scene_of(const scene_data& data, const scene_fit& fit) {
+template <class = void>
+[[nodiscard]] pluck_scene scene_of(const scene_data& data, const scene_fit& fit) {
   return scene_plucks(data.layout, data.guess.ac_coupled_Hz, fit.effects).scene(fit.value, 0);
 }
 
 namespace detail {
 
 /// The residual of a fit in the ringing part of a take.
-inline std::array<Eigen::VectorXd, 2> residual_of(const line_problem<scene_plucks>& p, const Eigen::VectorXd& v,
-                                                  std::size_t take) {
+template <class Real = double>
+std::array<Eigen::VectorXd, 2> residual_of(const line_problem<scene_plucks>& p, const Eigen::VectorXd& v, std::size_t take) {
   const auto& s = p.part(take, 1);
   const std::vector<damped_line> lines = p.lines(v, take, 1);
-  const Eigen::MatrixXd model = line_runner(lines, 1 / p.rate_Hz(take)).sum(lines, s.count());
+  const Eigen::MatrixX<Real> model = line_runner(lines, 1 / p.rate_Hz(take)).sum(lines, s.count());
   return {s.data[0] - model.col(0), s.data[1] - model.col(1)};
 }
+ROSIN_INSTANTIATE(std::array<Eigen::VectorXd, 2> residual_of(const line_problem<scene_plucks>&, const Eigen::VectorXd&,
+                                                             std::size_t))
 
 /// One score step for every effect that shows in the recordings alone; returns the largest step in standard deviations.
-inline double score_steps(const scene_data& data, scene_fit& fit, const fit_stage& stage, std::array<double, 2> noise) {
+template <class Real = double>
+double score_steps(const scene_data& data, scene_fit& fit, const fit_stage& stage, std::array<double, 2> noise) {
   double largest = 0;
   Eigen::Index at = data.layout.size();
   for (const pluck_effect& e : fit.effects) {
     if (e.parameters[0].by_score) {
       const line_problem<scene_plucks> here = data.problem(fit.effects, fit.value, stage, noise);
-      Eigen::VectorXd moved = fit.value;
+      Eigen::VectorX<Real> moved = fit.value;
       const double h = e.parameters[0].step;
       moved[at] += h;
       const line_problem<scene_plucks> there = data.problem(fit.effects, moved, stage, noise);
-      std::vector<std::array<Eigen::VectorXd, 2>> columns(here.takes());
+      std::vector<std::array<Eigen::VectorX<Real>, 2>> columns(here.takes());
       for (std::size_t t = 0; t < here.takes(); ++t) {
         columns[t] = residual_of(here, fit.value, t);
         const auto changed = residual_of(there, moved, t);
@@ -142,10 +149,11 @@ inline double score_steps(const scene_data& data, scene_fit& fit, const fit_stag
 }
 
 /// Quality and covariance of a fit that has settled.
-inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<scene_plucks>& problem) {
+template <class Real = double>
+void conclude(scene_fit& fit, const scene_data& data, const line_problem<scene_plucks>& problem) {
   fit.quality = problem.assess(fit.value);
   const normal_equations end = problem.linearise(fit.value);
-  const Eigen::MatrixXd inverse = invert_free(problem.model(), end.hessian);
+  const Eigen::MatrixX<Real> inverse = invert_free(problem.model(), end.hessian);
   fit.covariance = inverse * (end.prior + fit.quality.inflation() * problem.scatter(fit.value)) * inverse;
   Eigen::Index at = data.layout.size();
   std::size_t i = 0;
@@ -160,9 +168,9 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
 }  // namespace detail
 
 /// `value`: starting values of all parameters (scene_plucks); the noise weighs the channels. Assessed after the last stage.
-[[nodiscard]] inline scene_fit fit_scene(const scene_data& data, const std::vector<pluck_effect>& effects,
-                                         const Eigen::VectorXd& value, std::vector<fit_stage> stages,
-                                         std::array<double, 2> noise) {
+template <class = void>
+[[nodiscard]] scene_fit fit_scene(const scene_data& data, const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value,
+                                  std::vector<fit_stage> stages, std::array<double, 2> noise) {
   scene_fit fit{effects, value, {}, {}, {}, {}, 0, 0, false};
   bool again = false;  // what is taken out of the recordings depends on the fit
   for (const pluck_effect& e : effects) again = again || e.undo;
@@ -182,5 +190,7 @@ inline void conclude(scene_fit& fit, const scene_data& data, const line_problem<
   if (!stages.empty()) detail::conclude(fit, data, data.problem(effects, fit.value, stages.back(), noise));
   return fit;
 }
+ROSIN_INSTANTIATE(scene_fit fit_scene(const scene_data&, const std::vector<pluck_effect>&, const Eigen::VectorXd&,
+                                      std::vector<fit_stage>, std::array<double, 2>))
 
 }  // namespace rosin

@@ -34,8 +34,9 @@ inline std::complex<double> wire_factor(const pluck_scene& scene, std::complex<d
 }
 
 /// The string by itself: forces on the ends, no wire, no sensors.
-inline std::vector<damped_line> string_lines(const pluck_scene& scene, double position, int most,
-                                             const std::vector<std::complex<double>>& poles, double highest_Hz) {
+template <class = void>
+std::vector<damped_line> string_lines(const pluck_scene& scene, double position, int most,
+                                      const std::vector<std::complex<double>>& poles, double highest_Hz) {
   if (scene.plain_string()) return pluck_lines(scene.string, position, 0, {highest_Hz, highest_Hz}, most);
   std::vector<damped_line> lines = decay_lines(scene, position, poles);
   for (damped_line& line : lines) {
@@ -70,7 +71,8 @@ inline void add_polarisation(const pluck_scene& scene, std::vector<damped_line>&
 }
 
 /// The sensors' own ringing, from the string's closed-form response at their poles.
-inline void add_sensor_ringing(const pluck_scene& scene, double position, std::vector<damped_line>& lines) {
+template <class = void>
+void add_sensor_ringing(const pluck_scene& scene, double position, std::vector<damped_line>& lines) {
   for (std::size_t c = 0; c < 2; ++c) {
     const sensor_response& sensor = scene.sensors[c];
     if (!(sensor.resonance_Hz > 0) || sensor.q <= 0.5) continue;
@@ -89,8 +91,9 @@ inline void add_sensor_ringing(const pluck_scene& scene, double position, std::v
 }  // namespace detail
 
 /// What wire, polarisation and sensors make of the string's own lines (detail::string_lines).
-[[nodiscard]] inline std::vector<damped_line> recorded_lines(std::vector<damped_line> lines, const pluck_scene& scene,
-                                                             double position, const band& limits) {
+template <class = void>
+[[nodiscard]] std::vector<damped_line> recorded_lines(std::vector<damped_line> lines, const pluck_scene& scene, double position,
+                                                      const band& limits) {
   detail::add_polarisation(scene, lines);
   for (damped_line& line : lines) {
     const std::complex<double> wire = detail::wire_factor(scene, line.pole);
@@ -106,8 +109,9 @@ inline void add_sensor_ringing(const pluck_scene& scene, double position, std::v
 }
 
 /// All of it. `poles`: of the scene's string (string_poles.hpp); not needed where it is plain.
-[[nodiscard]] inline std::vector<damped_line> scene_lines(const pluck_scene& scene, double position, const band& limits, int most,
-                                                          const std::vector<std::complex<double>>& poles) {
+template <class = void>
+[[nodiscard]] std::vector<damped_line> scene_lines(const pluck_scene& scene, double position, const band& limits, int most,
+                                                   const std::vector<std::complex<double>>& poles) {
   return recorded_lines(detail::string_lines(scene, position, most, poles, limits.stop_Hz), scene, position, limits);
 }
 

@@ -21,6 +21,7 @@ namespace detail {
 /// pluck.
 class string_memory {
 public:
+  template <class = void>
   [[nodiscard]] const std::vector<damped_line>& lines(const Eigen::VectorXd& key, const pluck_scene& scene, double position,
                                                       const band& limits, int most) {
     entry& e = of(key, scene, limits.stop_Hz, most);
@@ -36,6 +37,7 @@ private:
     std::vector<std::pair<double, std::vector<damped_line>>> lines;
   };
 
+  template <class = void>
   entry& of(const Eigen::VectorXd& key, const pluck_scene& scene, double highest_Hz, int most) {
     for (auto& e : kept_)
       if (e.key == key) return e;
@@ -102,6 +104,7 @@ public:
     if (p < plain_size()) return pluck_layout::concerns(p, take);
     return added(p).take < 0 || added(p).take == static_cast<int>(take);
   }
+  template <class = void>
   [[nodiscard]] double step(Eigen::Index p, const Eigen::VectorXd& v) const {
     return p < plain_size() ? pluck_layout::step(p, v) : added(p).step;
   }
@@ -109,6 +112,7 @@ public:
     return p < plain_size() ? pluck_layout::prior(p, takes, guess) : knowledge{0, 0};
   }
   [[nodiscard]] std::string name(Eigen::Index p) const { return p < plain_size() ? pluck_layout::name(p) : added(p).name; }
+  template <class = void>
   [[nodiscard]] bool plausible(const Eigen::VectorXd& v, const Eigen::VectorXd& start, double highest_Hz) const {
     bool ok = pluck_layout::plausible(v.head(plain_size()), start.head(plain_size()), highest_Hz);
     for (Eigen::Index p = plain_size(); p < size(); ++p)
@@ -116,6 +120,7 @@ public:
     return ok;
   }
 
+  template <class = void>
   [[nodiscard]] pluck_scene scene(const Eigen::VectorXd& v, int take) const {
     pluck_scene s;
     s.string = string(v);
@@ -131,6 +136,7 @@ public:
     return s;
   }
 
+  template <class = void>
   [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
                                                const band& limits, int most) const {
     const pluck_scene s = scene(v, static_cast<int>(take));
@@ -166,10 +172,11 @@ public:
 
 private:
   /// What the poles depend on.
+  template <class Real = double>
   [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v, const pluck_scene& s) const {
     const Eigen::Index more = v.size() - first_of_uneven();
     constexpr Eigen::Index of_loss = loss_drag + 1 - causality;
-    Eigen::VectorXd k(gain_near + of_loss + more + 1);
+    Eigen::VectorX<Real> k(gain_near + of_loss + more + 1);
     k << v.head(gain_near), v.segment<of_loss>(causality), v.tail(more), s.string.fundamental_Hz;
     // what may be about 0: how near a string is tells by their size
     k.segment(gain_near, of_loss + plain_size() - first_of_uneven()).array() += 1;

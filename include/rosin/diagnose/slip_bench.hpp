@@ -28,6 +28,7 @@ struct law_under_tone {
 /// Slips of all takes, and the law as declared fitted to them.
 class slip_bench {
 public:
+  template <class = void>
   slip_bench(stick_bench& sticks, const std::vector<contact_take>& takes)
       : records_{slip_records(sticks, takes)}, pitches_{pitches_of(sticks)} {
     std::size_t samples = 0;
@@ -54,11 +55,13 @@ public:
   /// Of the mean friction coefficient, where sensors lost the force's mean.
   [[nodiscard]] double level_sd() const noexcept { return level_sd_; }
   /// The thermal law or the curve along the motion, a known ripple of the normal force besides.
+  template <class = void>
   [[nodiscard]] law_fit fit(bool thermal) const {
     return ripple_Hz_ ? fit_under(*ripple_Hz_, thermal).law : fit_to(records_, thermal);
   }
   /// A law and a tone of the normal force, found in turn: the tone in what the law leaves, the law in what the force is of
   /// the normal force then. Heat is sought once the curve has taken the most of the tone out.
+  template <class = void>
   [[nodiscard]] law_under_tone fit_under(double f_Hz, bool thermal) const {
     law_under_tone out{fit_to(records_, false), std::vector<std::complex<double>>(records_.size())};
     const auto settle = [&](const auto& refit) {
@@ -75,15 +78,17 @@ public:
   }
 
   /// Friction as the declared law has it, at the rows of a take.
+  template <class = void>
   [[nodiscard]] Eigen::VectorXd predicted(std::size_t take) const {
     return declared_.design.rows[take].target - declared_.fit.solution.residual[take];
   }
   /// Adds a tone of N to a design of the declared law.
+  template <class Real = double>
   void add_tone(stick_design& d, double f) const {
     for (std::size_t t = 0; t < records_.size(); ++t)
       for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
         auto& rows = d.rows[t];
-        const Eigen::VectorXd mu = predicted(t);
+        const Eigen::VectorX<Real> mu = predicted(t);
         const Eigen::Index c = rows.own.cols();
         rows.own.conservativeResize(rows.target.size(), c + 1);
         for (Eigen::Index i = 0; i < mu.size(); ++i)
@@ -95,12 +100,14 @@ public:
   }
 
 private:
+  template <class = void>
   [[nodiscard]] law_fit fit_to(const std::vector<slip_record>& records, bool thermal) const {
     return with_levels(!thermal ? fit_velocity_curve(records, floor())
                        : heat_  ? fit_memory(records, floor(), *heat_)
                                 : fit_thermal(records, floor()));
   }
   /// Where the mean force was lost, strokes may be off against the first by a constant.
+  template <class = void>
   [[nodiscard]] law_fit with_levels(law_fit law) const {
     if (!(level_sd_ > 0)) return law;
     detail::free_levels(law.design);
@@ -108,14 +115,15 @@ private:
     return law;
   }
   /// The tone in what the law leaves of the force as it is; by how much it moved.
+  template <class Real = double>
   [[nodiscard]] double take_up_tone(double f_Hz, law_under_tone& found) const {
     double moved = 0;
     for (std::size_t t = 0; t < records_.size(); ++t) {
       const auto& rows = found.law.design.rows[t];
       const auto& left = found.law.fit.solution.residual[t];
       const auto n = static_cast<std::size_t>(rows.target.size() - (rows.shared.cols() - 2));
-      const Eigen::VectorXd mu = rows.target - left;
-      Eigen::VectorXd beyond = left;
+      const Eigen::VectorX<Real> mu = rows.target - left;
+      Eigen::VectorX<Real> beyond = left;
       for (std::size_t i = 0; i < n; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         beyond[k] += rows.target[k] * tone_at(found.relative[t], f_Hz, rows.sample[i], records_[t].rate_Hz);

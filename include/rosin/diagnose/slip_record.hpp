@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick.hpp>
 #include <rosin/friction/slip_samples.hpp>
 
@@ -21,7 +22,8 @@ struct slip_record {
 };
 
 /// Smoothed force and motion of each take and their slips, a few samples clear of sticking.
-[[nodiscard]] inline std::vector<slip_record> slip_records(stick_bench& bench, const std::vector<contact_take>& takes) {
+template <class = void>
+[[nodiscard]] std::vector<slip_record> slip_records(stick_bench& bench, const std::vector<contact_take>& takes) {
   std::vector<slip_record> out;
   for (std::size_t t = 0; t < bench.records().size(); ++t) {
     auto& record = bench.records()[t];
@@ -42,5 +44,6 @@ struct slip_record {
   }
   return out;
 }
+ROSIN_INSTANTIATE(std::vector<slip_record> slip_records(stick_bench&, const std::vector<contact_take>&))
 
 }  // namespace rosin

@@ -12,6 +12,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_judgement.hpp>
 #include <rosin/math/fft.hpp>
 #include <rosin/math/median.hpp>
@@ -27,29 +28,30 @@ class slow_rest {
 public:
   static constexpr int most_partials = 8;  ///< so many gaps beside partials are looked at
 
+  template <class Real = double>
   slow_rest(const line_problem<scene_plucks>& problem, const Eigen::VectorXd& v, std::size_t take) {
     const double rate = problem.rate_Hz(take), pitch_Hz = v[0], edge_Hz = most_partials * pitch_Hz;
     for (const std::size_t part : {0U, 1U}) {
       const auto& s = problem.part(take, part);
       if (s.count() == 0) continue;
       const auto lines = problem.lines(v, take, part);
-      const Eigen::MatrixXd model = line_runner(lines, 1 / rate).sum(lines, s.count());
+      const Eigen::MatrixX<Real> model = line_runner(lines, 1 / rate).sum(lines, s.count());
       const auto begin = static_cast<Eigen::Index>(std::lround(s.begin_s * rate));
       if (left_.rows() == 0) first_ = begin;
       const Eigen::Index at = begin - first_, n = static_cast<Eigen::Index>(s.count());
-      left_.conservativeResizeLike(Eigen::MatrixXd::Zero(at + n, 2));
+      left_.conservativeResizeLike(Eigen::MatrixX<Real>::Zero(at + n, 2));
       for (Eigen::Index c = 0; c < 2; ++c) left_.block(at, c, n, 1) = s.data[static_cast<std::size_t>(c)] - model.col(c);
       if (part == 1) released_ = at;
     }
     const double size = static_cast<double>(left_.rows());
     per_partial_ = 2 * size * pitch_Hz / rate;
-    content_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(2 * size * edge_Hz / rate), 2);
+    content_ = Eigen::MatrixX<Real>::Zero(static_cast<Eigen::Index>(2 * size * edge_Hz / rate), 2);
     if (content_.rows() == 0) return;
     eigen_fft<double> fft(2 * static_cast<std::size_t>(left_.rows()));
     for (Eigen::Index c = 0; c < 2; ++c) {
-      Eigen::VectorXd padded = Eigen::VectorXd::Zero(2 * left_.rows());
+      Eigen::VectorX<Real> padded = Eigen::VectorX<Real>::Zero(2 * left_.rows());
       padded.head(left_.rows()) = left_.col(c);
-      Eigen::VectorXcd bins(left_.rows() + 1);
+      Eigen::VectorX<std::complex<Real>> bins(left_.rows() + 1);
       fft.forward(padded.data(), bins.data());
       for (Eigen::Index k = 0; k < content_.rows(); ++k)
         content_(k, c) = 2 / size * (bins[k + 1] * std::conj(half_sample(k))).real();
@@ -70,9 +72,10 @@ public:
       if (gap_of(k) < 0 || gap_of(k) >= gap) content_(k, channel) = 0;
   }
   /// Those that stand out among their neighbours, as hum does, are not noise.
+  template <class Real = double>
   void spare_lines(double times) {
     constexpr Eigen::Index reach = 8;
-    const Eigen::MatrixXd all = content_;
+    const Eigen::MatrixX<Real> all = content_;
     for (Eigen::Index c = 0; c < 2; ++c)
       for (Eigen::Index k = 0; k < all.rows(); ++k) {
         std::vector<double> around;
@@ -83,19 +86,21 @@ public:
       }
   }
   /// The samples of a record of this length, in one channel.
+  template <class Real = double>
   [[nodiscard]] Eigen::VectorXd slow(Eigen::Index channel, Eigen::Index length) const {
     const Eigen::Index n = left_.rows();
-    Eigen::VectorXcd bins = Eigen::VectorXcd::Zero(n + 1);
+    Eigen::VectorX<std::complex<Real>> bins = Eigen::VectorX<std::complex<Real>>::Zero(n + 1);
     for (Eigen::Index k = 0; k < content_.rows(); ++k)
       bins[k + 1] = static_cast<double>(n) * content_(k, channel) * half_sample(k);
-    Eigen::VectorXd whole(2 * n), out(length);
+    Eigen::VectorX<Real> whole(2 * n), out(length);
     eigen_fft<double>(2 * static_cast<std::size_t>(n)).inverse(bins.data(), whole.data());
     for (Eigen::Index i = 0; i < length; ++i) out[i] = whole[((i - first_) % (2 * n) + 2 * n) % (2 * n)];
     return out;
   }
   /// Mean squares in the first and the last two fifths of what rings.
+  template <class Real = double>
   [[nodiscard]] std::array<double, 2> early_and_late(Eigen::Index channel) const {
-    const Eigen::VectorXd x = slow(channel, first_ + left_.rows()).tail(left_.rows() - released_);
+    const Eigen::VectorX<Real> x = slow(channel, first_ + left_.rows()).tail(left_.rows() - released_);
     const Eigen::Index part = std::max<Eigen::Index>(1, 2 * x.size() / 5);
     return {x.head(part).squaredNorm() / static_cast<double>(part), x.tail(part).squaredNorm() / static_cast<double>(part)};
   }
@@ -124,8 +129,9 @@ struct slow_noise {
   double over = 1;
 };
 
-[[nodiscard]] inline slow_noise slow_noise_of(std::vector<slow_rest> rests, const std::vector<pluck_take>& takes, double noise_N,
-                                              Eigen::Index channel) {
+template <class = void>
+[[nodiscard]] slow_noise slow_noise_of(std::vector<slow_rest> rests, const std::vector<pluck_take>& takes, double noise_N,
+                                       Eigen::Index channel) {
   constexpr double white_median = 0.455, much = 3, least_late = 0.2, foot = 10;
   slow_noise found;
   std::array<double, 2> beside_pitch{1, 1};  // below and above
@@ -176,8 +182,9 @@ struct plucks_without_slow_noise {
 };
 
 /// Nothing where there is none. What was found beyond doubt is not noise; what is in doubt may be.
-[[nodiscard]] inline std::optional<plucks_without_slow_noise> without_slow_noise(const pluck_diagnosis& d,
-                                                                                 const std::vector<pluck_take>& held) {
+template <class Real = double>
+[[nodiscard]] std::optional<plucks_without_slow_noise> without_slow_noise(const pluck_diagnosis& d,
+                                                                          const std::vector<pluck_take>& held) {
   constexpr double beyond_doubt = 200, stands_out = 20;
   scene_fit fit = d.best;
   for (std::size_t i = fit.effects.size(); i-- > 0;)
@@ -187,12 +194,12 @@ struct plucks_without_slow_noise {
   std::vector<pluck_take> takes = d.data.takes;
   std::vector<detail::slow_rest> rests;
   const auto whole = d.data.problem(fit.effects, fit.value, {1000, 1e9, true, freedom::all}, {1, 1});
-  for (std::size_t t = 0; t < takes.size(); ++t) rests.emplace_back(whole, fit.value, t);
+  for (std::size_t t = 0; t < takes.size(); ++t) rests.push_back(detail::slow_rest(whole, fit.value, t));
   for (const pluck_take& take : held) {
     const auto seen = detail::see(d.data, fit, take);
     if (!seen) return std::nullopt;
-    rests.emplace_back(seen->data.problem(seen->fit.effects, seen->fit.value, {1000, 1e9, true, freedom::all}, {1, 1}),
-                       seen->fit.value, 0);
+    rests.push_back(detail::slow_rest(
+        seen->data.problem(seen->fit.effects, seen->fit.value, {1000, 1e9, true, freedom::all}, {1, 1}), seen->fit.value, 0));
     takes.push_back(take);
   }
   const std::array<detail::slow_noise, 2> slow{detail::slow_noise_of(rests, takes, fit.quality.noise[0], 0),
@@ -204,13 +211,15 @@ struct plucks_without_slow_noise {
       const auto channel = static_cast<Eigen::Index>(c);
       auto& x = takes[t].force_N[c];
       rests[t].keep_below(slow[c].gaps, channel);
-      const Eigen::VectorXd rest = rests[t].slow(channel, static_cast<Eigen::Index>(x.size()));
-      Eigen::Map<Eigen::VectorXd>(x.data(), rest.size()) -= rest;
+      const Eigen::VectorX<Real> rest = rests[t].slow(channel, static_cast<Eigen::Index>(x.size()));
+      Eigen::Map<Eigen::VectorX<Real>>(x.data(), rest.size()) -= rest;
     }
   }
   const auto fitted = static_cast<std::ptrdiff_t>(d.data.takes.size());
   return plucks_without_slow_noise{
       {takes.begin(), takes.begin() + fitted}, {takes.begin() + fitted, takes.end()}, std::max(slow[0].over, slow[1].over)};
 }
+ROSIN_INSTANTIATE(std::optional<plucks_without_slow_noise> without_slow_noise(const pluck_diagnosis&,
+                                                                              const std::vector<pluck_take>&))
 
 }  // namespace rosin

@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/torsion/stick_regression.hpp>
 
 #include <array>
@@ -17,11 +18,18 @@ struct stick_design {
   std::vector<stick_rows> rows;
   std::vector<std::array<double, 2>> bounds;  ///< of the shared coefficients
 
-  void add_shared(std::size_t take, const std::vector<double>& samples) { append(rows[take].shared, rows[take].sample, samples); }
-  void add_own(std::size_t take, const std::vector<double>& samples) { append(rows[take].own, rows[take].sample, samples); }
+  template <class = void>
+  void add_shared(std::size_t take, const std::vector<double>& samples) {
+    append(rows[take].shared, rows[take].sample, samples);
+  }
+  template <class = void>
+  void add_own(std::size_t take, const std::vector<double>& samples) {
+    append(rows[take].own, rows[take].sample, samples);
+  }
   void add_bound(double low, double high) { bounds.push_back({low, high}); }
 
 private:
+  template <class = void>
   static void append(Eigen::MatrixXd& to, const std::vector<std::size_t>& at, const std::vector<double>& samples) {
     const Eigen::Index c = to.cols();
     to.conservativeResize(static_cast<Eigen::Index>(at.size()), c + 1);
@@ -39,7 +47,8 @@ struct design_fit {
 namespace detail {
 
 /// Takes cut in halves if there is only one.
-[[nodiscard]] inline std::vector<stick_rows> at_least_two(const std::vector<stick_rows>& rows) {
+template <class = void>
+[[nodiscard]] std::vector<stick_rows> at_least_two(const std::vector<stick_rows>& rows) {
   if (rows.size() != 1) return rows;
   const auto& r = rows.front();
   const Eigen::Index half = r.target.size() / 2, rest = r.target.size() - half;
@@ -49,7 +58,8 @@ namespace detail {
 }
 
 /// The rows that are marked.
-[[nodiscard]] inline stick_rows rows_of(const stick_rows& all, const std::vector<char>& marked) {
+template <class = void>
+[[nodiscard]] stick_rows rows_of(const stick_rows& all, const std::vector<char>& marked) {
   std::vector<Eigen::Index> kept;
   stick_rows out;
   for (std::size_t i = 0; i < marked.size(); ++i)
@@ -57,11 +67,13 @@ namespace detail {
   out.target = all.target(kept), out.shared = all.shared(kept, Eigen::all), out.own = all.own(kept, Eigen::all);
   return out;
 }
+ROSIN_INSTANTIATE(stick_rows rows_of(const stick_rows&, const std::vector<char>&))
 
 /// Log density of one part under the shared coefficients of the others; its own coefficients and the size of what is left are its
 /// own. `marked`: the rows that count; empty: all.
-[[nodiscard]] inline double predict_part(const std::vector<stick_rows>& parts, std::size_t which, double floor,
-                                         const stick_prior& prior, const std::vector<char>& marked = {}) {
+template <class = void>
+[[nodiscard]] double predict_part(const std::vector<stick_rows>& parts, std::size_t which, double floor, const stick_prior& prior,
+                                  const std::vector<char>& marked = {}) {
   std::vector<stick_rows> others;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (i != which && parts[i].target.size() > parts[i].own.cols() + parts[i].shared.cols()) others.push_back(parts[i]);
@@ -79,9 +91,10 @@ namespace detail {
 }  // namespace detail
 
 /// The regression with coefficients that would leave their bounds held there.
-[[nodiscard]] inline stick_solution bounded_regression(const stick_design& design, double floor, stick_prior& held) {
+template <class Real = double>
+[[nodiscard]] stick_solution bounded_regression(const stick_design& design, double floor, stick_prior& held) {
   const auto n = static_cast<Eigen::Index>(design.bounds.size());
-  held = {Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  held = {Eigen::VectorX<Real>::Zero(n), Eigen::VectorX<Real>::Zero(n)};
   stick_solution s = stick_regression(design.rows, floor);
   for (int pass = 0; pass < 4; ++pass) {
     bool inside = true;
@@ -98,8 +111,10 @@ namespace detail {
   }
   return s;
 }
+ROSIN_INSTANTIATE(stick_solution bounded_regression(const stick_design&, double, stick_prior&))
 
-[[nodiscard]] inline design_fit fit_design(const stick_design& design, double floor) {
+template <class = void>
+[[nodiscard]] design_fit fit_design(const stick_design& design, double floor) {
   stick_prior held;
   design_fit fit{};
   fit.solution = bounded_regression(design, floor, held);
@@ -109,5 +124,6 @@ namespace detail {
   for (std::size_t i = 0; i < parts.size(); ++i) fit.held_out += detail::predict_part(parts, i, floor, held);
   return fit;
 }
+ROSIN_INSTANTIATE(design_fit fit_design(const stick_design&, double))
 
 }  // namespace rosin

@@ -44,6 +44,7 @@ class stretching_pluck {
 public:
   /// Partials to `most` below the stop frequency, seen through the band. Both planes have one tension: of the square of the
   /// motion a share c / (1 + c) is across, c = |coupling|, as if the angles of pluck and sensors were alike.
+  template <class Real = double>
   stretching_pluck(const ringing_string& string, double position, double force_over_tension, const band& limits, int most,
                    second_plane other = {}, const std::vector<string_load>& loads = {}) {
     const double c = other.coupling, across = std::abs(c) / (1 + std::abs(c));
@@ -52,16 +53,17 @@ public:
     add(string, loads, limits, most, 1 / (1 + c), 1 - across);
     if (c != 0) add(second, loads, limits, most, c / (1 + c), across);
     for (slowed& s : slowed_)
-      for (Eigen::ArrayXd* x : {&s.push, &s.feel}) append(*x, Eigen::ArrayXd::Zero(kick_.size() - x->size()));
+      for (Eigen::ArrayX<Real>* x : {&s.push, &s.feel}) append(*x, Eigen::ArrayX<Real>::Zero(kick_.size() - x->size()));
     pluck_at(position, force_over_tension);
   }
 
   /// The same string, plucked elsewhere or with another force.
+  template <class Real = double>
   void pluck_at(double position, double force_over_tension) {
     force_ = force_over_tension;
     held_.resize(0);
     for (const plane_basis& m : planes_) {
-      const Eigen::ArrayXd pi_n = std::numbers::pi * numbers(m.partials);
+      const Eigen::ArrayX<Real> pi_n = std::numbers::pi * numbers(m.partials);
       // Slope amplitude k q of the held string: 2 F sin(k x) / (L k (T + B k^2)) -> (2 / (n pi)) (F/T) sin / (1 + b)
       append(held_, 2 / pi_n * (position * pi_n).sin());
     }
@@ -70,9 +72,10 @@ public:
   /// Forces on {near, far}, relative to the pluck's own: `count` values, the first `first_s` after the release (in [0,
   /// sample_s]), then every sample_s, each reached in `steps` steps. stretch: EA / (4 T), dimensionless with k q in units of
   /// slope; raised: what else the tension is higher by, relatively.
+  template <class Real = double>
   [[nodiscard]] std::array<std::vector<double>, 2> run(double stretch, double first_s, double sample_s, std::size_t steps,
                                                        std::size_t count, double raised = 0) const {
-    Eigen::ArrayXd q = held(raised), p = Eigen::ArrayXd::Zero(q.size()), scratch;
+    Eigen::ArrayX<Real> q = held(raised), p = Eigen::ArrayX<Real>::Zero(q.size()), scratch;
     for (int i = 0; stretch > 0 && i < 8; ++i) q = held(raised + stretch * squared(q));  // the held string is stretched as well
     std::array<std::vector<double>, 2> out{std::vector<double>(count), std::vector<double>(count)};
     const double first_step_s = first_s / static_cast<double>(steps), step_s = sample_s / static_cast<double>(steps);
@@ -87,9 +90,10 @@ public:
   }
 
   /// The string's mean strain (1 / 2L) integral y'^2 dx where its tension stays as it is, at the same instants.
+  template <class Real = double>
   [[nodiscard]] std::vector<double> unstretched_strain(double first_s, double sample_s, std::size_t count) const {
     const half_turn begin = half_turn_in(2 * first_s), turn = half_turn_in(2 * sample_s);
-    Eigen::ArrayXd q = held(0), p = Eigen::ArrayXd::Zero(q.size()), scratch;
+    Eigen::ArrayX<Real> q = held(0), p = Eigen::ArrayX<Real>::Zero(q.size()), scratch;
     begin(q, p, scratch);
     std::vector<double> out(count);
     for (double& strain : out) {
@@ -100,7 +104,10 @@ public:
   }
 
   /// Mean strain of the held string.
-  [[nodiscard]] double held_strain() const { return squared(held(0)) / 4; }
+  template <class = void>
+  [[nodiscard]] double held_strain() const {
+    return squared(held(0)) / 4;
+  }
 
 private:
   /// One plane as the string moves in it: modes, as combinations v of the partials that a string without masses has.
@@ -110,6 +117,7 @@ private:
     Eigen::MatrixXd to_modes;                ///< from displacements; empty without masses
   };
   /// Masses hang on what partials beyond the highest one give way by, as on springs.
+  template <class Real = double>
   [[nodiscard]] static plane plane_of(const ringing_string& string, const std::vector<string_load>& loads, double stop_Hz,
                                       int most) {
     std::vector<string_load> masses;
@@ -118,94 +126,105 @@ private:
     const double highest_Hz = masses.empty() ? stop_Hz : 1.3 * stop_Hz;
     while (count < most && string.partial_Hz(count + 1) < highest_Hz) ++count;
     plane out;
-    const auto squares = [&](const Eigen::ArrayXd& n) {
-      return Eigen::ArrayXd(n.square() * (1 + string.inharmonicity * n.square()));  // of frequencies, in fundamentals
+    const auto squares = [&](const Eigen::ArrayX<Real>& n) {
+      return Eigen::ArrayX<Real>(n.square() * (1 + string.inharmonicity * n.square()));  // of frequencies, in fundamentals
     };
-    const Eigen::ArrayXd n = numbers(count), w2 = squares(n);
+    const Eigen::ArrayX<Real> n = numbers(count), w2 = squares(n);
     const auto dispersed = [&](double f) { return string.dispersed(f); };
     out.frequency_Hz = (string.fundamental_Hz * w2.sqrt()).unaryExpr(dispersed), out.stiffened = n.square();
-    out.shapes = Eigen::MatrixXd::Identity(count, count);
+    out.shapes = Eigen::MatrixX<Real>::Identity(count, count);
     if (masses.empty()) return out;
     const auto heavy = static_cast<Eigen::Index>(masses.size());
-    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(count + heavy, count + heavy), inertia = stiffness,
-                    at_rest = Eigen::MatrixXd::Identity(count + heavy, count);
+    Eigen::MatrixX<Real> stiffness = Eigen::MatrixX<Real>::Zero(count + heavy, count + heavy), inertia = stiffness,
+                         at_rest = Eigen::MatrixX<Real>::Identity(count + heavy, count);
     stiffness.diagonal().head(count) = w2, inertia.diagonal().head(count).setOnes();
-    const Eigen::ArrayXd beyond = numbers(50 * count).tail(49 * count), beyond2 = squares(beyond);
+    const Eigen::ArrayX<Real> beyond = numbers(50 * count).tail(49 * count), beyond2 = squares(beyond);
     for (Eigen::Index m = 0; m < heavy; ++m) {
       const string_load& l = masses[static_cast<std::size_t>(m)];
-      const auto shape = [&](const Eigen::ArrayXd& k) { return Eigen::ArrayXd((k * std::numbers::pi * l.position).sin()); };
+      const auto shape = [&](const Eigen::ArrayX<Real>& k) {
+        return Eigen::ArrayX<Real>((k * std::numbers::pi * l.position).sin());
+      };
       const double spring = 1 / std::max(1e-9, (shape(beyond).square() / beyond2).sum());  // near an end hardly any give way
-      Eigen::VectorXd stretch = Eigen::VectorXd::Zero(count + heavy);
+      Eigen::VectorX<Real> stretch = Eigen::VectorX<Real>::Zero(count + heavy);
       stretch.head(count) = shape(n).matrix(), stretch[count + m] = -1;
       stiffness += spring * stretch * stretch.transpose();
       inertia(count + m, count + m) = 4 * string.fundamental_Hz * l.mass_s;
       at_rest.row(count + m) = shape(n).matrix().transpose();
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness, inertia);
-    const Eigen::ArrayXd f = (string.fundamental_Hz * modes.eigenvalues().cwiseMax(0).cwiseSqrt().array()).unaryExpr(dispersed);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixX<Real>> modes(stiffness, inertia);
+    const Eigen::ArrayX<Real> f =
+        (string.fundamental_Hz * modes.eigenvalues().cwiseMax(0).cwiseSqrt().array()).unaryExpr(dispersed);
     const Eigen::Index kept = (f < stop_Hz).count();
     out.frequency_Hz = f.head(kept), out.shapes = modes.eigenvectors().topLeftCorner(count, kept);
     out.stiffened = (out.shapes.array().square().colwise() * n.square()).colwise().sum().transpose();
     out.to_modes = modes.eigenvectors().leftCols(kept).transpose() * inertia * at_rest;
     return out;
   }
+  template <class Real = double>
   [[nodiscard]] static Eigen::ArrayXd numbers(Eigen::Index count) {
-    return Eigen::ArrayXd::LinSpaced(count, 1, static_cast<double>(count));
+    return Eigen::ArrayX<Real>::LinSpaced(count, 1, static_cast<double>(count));
   }
+  template <class = void>
   static void append(Eigen::ArrayXd& to, const Eigen::ArrayXd& more) {
     to.conservativeResize(to.size() + more.size());
     to.tail(more.size()) = more;
   }
   /// How much of one plane's modes is heard, and their share of the motion's square.
+  template <class Real = double>
   void add(const ringing_string& string, const std::vector<string_load>& loads, const band& limits, int most, double heard,
            double share) {
     const plane modes = plane_of(string, loads, limits.stop_Hz, most);
     const Eigen::Index partials = modes.shapes.rows(), count = modes.shapes.cols(), first = kick_.size();
-    const Eigen::ArrayXd n = numbers(partials), pi_n = std::numbers::pi * n, stiff = 1 + string.inharmonicity * n.square();
+    const Eigen::ArrayX<Real> n = numbers(partials), pi_n = std::numbers::pi * n, stiff = 1 + string.inharmonicity * n.square();
     append(stiff_, stiff);
-    const Eigen::ArrayXd size = modes.stiffened.sqrt();  // of a mode in units of slope
-    const Eigen::MatrixXd slopes = n.matrix().asDiagonal() * modes.shapes * (1 / size).matrix().asDiagonal();
+    const Eigen::ArrayX<Real> size = modes.stiffened.sqrt();  // of a mode in units of slope
+    const Eigen::MatrixX<Real> slopes = n.matrix().asDiagonal() * modes.shapes * (1 / size).matrix().asDiagonal();
     planes_.push_back({partials, {}});
     if (modes.to_modes.size() > 0)
       planes_.back().to_modes = size.matrix().asDiagonal() * modes.to_modes * (1 / n).matrix().asDiagonal();
-    Eigen::ArrayXd weight(count), decay(count), turn(count);
+    Eigen::ArrayX<Real> weight(count), decay(count), turn(count);
     for (Eigen::Index k = 0; k < count; ++k) {
       const double f = modes.frequency_Hz[k], w = 2 * std::numbers::pi * f, half = string.loss.inverse_q(f) / 2;
       weight[k] = heard * band_weight(limits, {-w * half, w}).real(), decay[k] = w * half,
       turn[k] = w * std::sqrt(1 - half * half);
     }
-    append(decay_1_s_, decay), append(turn_rad_s_, turn), append(share_, Eigen::ArrayXd::Constant(count, share));
+    append(decay_1_s_, decay), append(turn_rad_s_, turn), append(share_, Eigen::ArrayX<Real>::Constant(count, share));
     append(kick_, std::pow(2 * std::numbers::pi * string.fundamental_Hz, 2) * modes.stiffened);
     for (std::size_t c = 0; c < 2; ++c) {
-      const Eigen::ArrayXd sign = c == 0 ? Eigen::ArrayXd::Ones(partials) : Eigen::ArrayXd(-(pi_n.cos()));
+      const Eigen::ArrayX<Real> sign = c == 0 ? Eigen::ArrayX<Real>::Ones(partials) : Eigen::ArrayX<Real>(-(pi_n.cos()));
       append(heard_[c], weight * (slopes.transpose() * (sign * stiff).matrix()).array());
       append(heard_of_stretch_[c], weight * (slopes.transpose() * sign.matrix()).array());
     }
     for (const string_load& l : loads) {
-      const Eigen::ArrayXd there = (modes.shapes.transpose() * (l.position * pi_n).sin().matrix()).array();
-      slowed s{Eigen::ArrayXd::Zero(first), Eigen::ArrayXd::Zero(first), 4 * l.resistance * string.fundamental_Hz,
+      const Eigen::ArrayX<Real> there = (modes.shapes.transpose() * (l.position * pi_n).sin().matrix()).array();
+      slowed s{Eigen::ArrayX<Real>::Zero(first), Eigen::ArrayX<Real>::Zero(first), 4 * l.resistance * string.fundamental_Hz,
                there.square().sum()};
       append(s.push, size * there), append(s.feel, there / size);
       if (l.resistance > 0 && s.all > 0) slowed_.push_back(std::move(s));
     }
   }
   /// Of the held string, in modes, as a rise e of its tension leaves it.
+  template <class Real = double>
   [[nodiscard]] Eigen::ArrayXd held(double e) const {
-    const Eigen::ArrayXd slopes = force_ * held_ / (stiff_ + e);
-    Eigen::ArrayXd out;
+    const Eigen::ArrayX<Real> slopes = force_ * held_ / (stiff_ + e);
+    Eigen::ArrayX<Real> out;
     Eigen::Index at = 0;
     for (const plane_basis& m : planes_) {
-      const Eigen::ArrayXd here = slopes.segment(at, m.partials);
-      append(out, m.to_modes.size() > 0 ? Eigen::ArrayXd(m.to_modes * here.matrix()) : here);
+      const Eigen::ArrayX<Real> here = slopes.segment(at, m.partials);
+      append(out, m.to_modes.size() > 0 ? Eigen::ArrayX<Real>(m.to_modes * here.matrix()) : here);
       at += m.partials;
     }
     return out;
   }
   /// Sum of (k q)^2.
-  [[nodiscard]] double squared(const Eigen::ArrayXd& q) const { return (share_ * q.square()).sum(); }
+  template <class = void>
+  [[nodiscard]] double squared(const Eigen::ArrayXd& q) const {
+    return (share_ * q.square()).sum();
+  }
 
   struct half_turn {
     Eigen::ArrayXd qq, qp, pq, pp;
+    template <class = void>
     void operator()(Eigen::ArrayXd& q, Eigen::ArrayXd& p, Eigen::ArrayXd& scratch) const {
       scratch = qq * q + qp * p;
       p = pq * q + pp * p;
@@ -213,13 +232,16 @@ private:
     }
   };
 
+  template <class Real = double>
   [[nodiscard]] half_turn half_turn_in(double step_s) const {
     const double h = step_s / 2;
-    const Eigen::ArrayXd decay = (-decay_1_s_ * h).exp(), s = (turn_rad_s_ * h).sin() / turn_rad_s_, c = (turn_rad_s_ * h).cos();
+    const Eigen::ArrayX<Real> decay = (-decay_1_s_ * h).exp(), s = (turn_rad_s_ * h).sin() / turn_rad_s_,
+                              c = (turn_rad_s_ * h).cos();
     return {decay * (c + decay_1_s_ * s), decay * s, -decay * (decay_1_s_.square() + turn_rad_s_.square()) * s,
             decay * (c - decay_1_s_ * s)};
   }
 
+  template <class = void>
   void step(Eigen::ArrayXd& q, Eigen::ArrayXd& p, Eigen::ArrayXd& scratch, const half_turn& turn, double stretch, double raised,
             double step_s) const {
     turn(q, p, scratch);

@@ -10,6 +10,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/string_response.hpp>
 
 #include <algorithm>
@@ -32,13 +33,15 @@ inline std::complex<double> mode_zeros(const pluck_scene& scene, std::complex<do
 }
 
 /// D(s), times the polynomials of the ends' modes: entire around the roots that are sought.
-inline std::complex<double> characteristic(const pluck_scene& scene, std::complex<double> s, double strength) {
+template <class = void>
+std::complex<double> characteristic(const pluck_scene& scene, std::complex<double> s, double strength) {
   return loop_determinant(scene, s, strength) * mode_zeros(scene, s, s, 1e300);
 }
 
 /// One Aberth sweep over the roots that are not settled yet; returns the largest correction relative to the spacing.
-inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>& roots, std::vector<bool>& settled,
-                    double strength, double spacing) {
+template <class = void>
+double sweep(const pluck_scene& scene, std::vector<std::complex<double>>& roots, std::vector<bool>& settled, double strength,
+             double spacing) {
   constexpr std::size_t neighbours = 3;
   double largest = 0;
   for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -63,8 +66,8 @@ inline double sweep(const pluck_scene& scene, std::vector<std::complex<double>>&
 }
 
 /// Sweeps until all roots are settled; false where they are not after that many.
-inline bool settle(const pluck_scene& scene, std::vector<std::complex<double>>& roots, double strength, double spacing,
-                   int most) {
+template <class = void>
+bool settle(const pluck_scene& scene, std::vector<std::complex<double>>& roots, double strength, double spacing, int most) {
   std::vector<bool> settled(roots.size(), false);
   for (int i = 0; i < most; ++i)
     if (const double moved = sweep(scene, roots, settled, strength, spacing); !(moved >= 1e-5)) return std::isfinite(moved);
@@ -108,8 +111,9 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
 }  // namespace detail
 
 /// Poles below `highest_Hz`, in order of frequency. `near`: poles of a scene much like this one, to begin from; may be empty.
-[[nodiscard]] inline std::vector<std::complex<double>> string_poles(const pluck_scene& scene, double highest_Hz, int most,
-                                                                    const std::vector<std::complex<double>>& near = {}) {
+template <class = void>
+[[nodiscard]] std::vector<std::complex<double>> string_poles(const pluck_scene& scene, double highest_Hz, int most,
+                                                             const std::vector<std::complex<double>>& near = {}) {
   const double spacing = 2 * std::numbers::pi * scene.string.fundamental_Hz;
   if (!near.empty()) {
     std::vector<std::complex<double>> roots = near;
@@ -142,10 +146,13 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
     detail::settle(scene, roots, strength, spacing, strength == 1.0 ? 12 : 4);
   return detail::with_real_poles(std::move(roots));
 }
+ROSIN_INSTANTIATE(std::vector<std::complex<double>> string_poles(const pluck_scene&, double, int,
+                                                                 const std::vector<std::complex<double>>&))
 
 /// Free decay of a pluck of 1 N at `position`, from its poles. Residues at the instant of release.
-[[nodiscard]] inline std::vector<damped_line> decay_lines(const pluck_scene& scene, double position,
-                                                          const std::vector<std::complex<double>>& poles) {
+template <class = void>
+[[nodiscard]] std::vector<damped_line> decay_lines(const pluck_scene& scene, double position,
+                                                   const std::vector<std::complex<double>>& poles) {
   const double spacing = 2 * std::numbers::pi * scene.string.fundamental_Hz;
   std::vector<damped_line> lines;
   for (const std::complex<double> s : poles) {
@@ -164,5 +171,6 @@ inline double partial_between_clamps_Hz(const pluck_scene& scene, int n) {
   }
   return lines;
 }
+ROSIN_INSTANTIATE(std::vector<damped_line> decay_lines(const pluck_scene&, double, const std::vector<std::complex<double>>&))
 
 }  // namespace rosin

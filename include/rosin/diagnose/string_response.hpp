@@ -27,6 +27,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_scene.hpp>
 #include <rosin/propagate/complex_dispersion.hpp>
 #include <rosin/propagate/dispersion.hpp>
@@ -189,8 +190,9 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
 
 /// sin(qL) times the loop's matrix: g_i + Z_i v_i = 0 for scatterers, u_m - Y F_m = 0 for ends (the string's velocity by u_m is
 /// by reciprocity its end force).
-[[nodiscard]] inline loop_matrix loop_of(const pluck_scene& scene, const string_at& string, const moving_ends& ends,
-                                         std::complex<double> s, double strength) {
+template <class = void>
+[[nodiscard]] loop_matrix loop_of(const pluck_scene& scene, const string_at& string, const moving_ends& ends,
+                                  std::complex<double> s, double strength) {
   const auto count = static_cast<Eigen::Index>(scene.scatterers.size());
   const auto at = [&](Eigen::Index i) { return scene.scatterers[static_cast<std::size_t>(i)].position; };
   const auto size = count + ends.count + clamped_ends(scene).count;
@@ -212,7 +214,8 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
 }
 
 /// det A / sin(qL)^(n-1), which is entire.
-[[nodiscard]] inline std::complex<double> determinant_of(const loop_matrix& A, std::complex<double> sine) {
+template <class = void>
+[[nodiscard]] std::complex<double> determinant_of(const loop_matrix& A, std::complex<double> sine) {
   const Eigen::Index n = A.rows();
   if (n == 0) return sine;
   if (n == 1) return A(0, 0);
@@ -223,14 +226,15 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
 }  // namespace detail
 
 /// The closed loop's determinant at one frequency. `strength` scales scatterers and the motion of the ends.
-[[nodiscard]] inline std::complex<double> loop_determinant(const pluck_scene& scene, std::complex<double> s,
-                                                           double strength = 1) {
+template <class = void>
+[[nodiscard]] std::complex<double> loop_determinant(const pluck_scene& scene, std::complex<double> s, double strength = 1) {
   const string_at string(scene, s);
   return detail::determinant_of(detail::loop_of(scene, string, detail::moving_ends(scene), s, strength), string.sine());
 }
 
 /// Determinant and end forces; unknowns are the forces of the scatterers on the string and the speeds of the yielding ends.
-[[nodiscard]] inline loop_response close_loop(const pluck_scene& scene, double position, std::complex<double> s) {
+template <class = void>
+[[nodiscard]] loop_response close_loop(const pluck_scene& scene, double position, std::complex<double> s) {
   const string_at string(scene, s);
   const detail::moving_ends ends(scene);
   const detail::clamped_ends clamped(scene);
@@ -262,5 +266,6 @@ inline void add_moments(loop_matrix& A, const pluck_scene& scene, const string_a
         r.determinant * plain::reciprocal(string.sine()) * (string.end_force(e, position) + (out.row(e) * drive)(0));
   return r;
 }
+ROSIN_INSTANTIATE(loop_response close_loop(const pluck_scene&, double, std::complex<double>))
 
 }  // namespace rosin

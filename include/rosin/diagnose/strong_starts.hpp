@@ -8,6 +8,7 @@
 #pragma once
 
 #include <rosin/calibrate/end_fit.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_score.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 
@@ -19,15 +20,18 @@ struct found_start {
   Eigen::VectorXd value;
 };
 
-inline Eigen::VectorXd extended(const pluck_layout& layout, const Eigen::VectorXd& value, const pluck_effect& e,
-                                const std::vector<double>& start) {
-  Eigen::VectorXd v(value.size() + static_cast<Eigen::Index>(start.size()));
+template <class Real = double>
+Eigen::VectorXd extended(const pluck_layout& layout, const Eigen::VectorXd& value, const pluck_effect& e,
+                         const std::vector<double>& start) {
+  Eigen::VectorX<Real> v(value.size() + static_cast<Eigen::Index>(start.size()));
   v.head(value.size()) = value;
   for (std::size_t i = 0; i < start.size(); ++i)
     v[value.size() + static_cast<Eigen::Index>(i)] = to_fitted(e.parameters[i], start[i]);
   if (e.rebase) e.rebase(layout, v);
   return v;
 }
+ROSIN_INSTANTIATE(Eigen::VectorXd extended(const pluck_layout&, const Eigen::VectorXd&, const pluck_effect&,
+                                           const std::vector<double>&))
 
 /// What an effect would gain as it stands: on the parabola through 0 and the best mix.
 inline double gain_as_it_stands(const score_result& s) {
@@ -39,12 +43,13 @@ using known_starts = std::optional<std::vector<found_start>>;
 
 /// A support's mode as the fit along a line of complex frequencies sees it (calibrate/end_fit.hpp), which no strong coupling
 /// leads astray; for either end, whichever it chose. It knows of no other effect.
-[[nodiscard]] inline std::vector<found_start> support_starts(const scene_data& data, const std::vector<pluck_effect>& supports) {
+template <class Real = double>
+[[nodiscard]] std::vector<found_start> support_starts(const scene_data& data, const std::vector<pluck_effect>& supports) {
   end_options one;
   one.most_modes = 1;
   const auto fitted = fit_ends(data.takes, data.guess, data.options, one);
   if (!fitted || fitted->modes.empty() || fitted->plucks.value.size() != data.layout.first_of_ends()) return {};
-  Eigen::VectorXd value = Eigen::VectorXd::Zero(data.layout.size());  // known ends as declared
+  Eigen::VectorX<Real> value = Eigen::VectorX<Real>::Zero(data.layout.size());  // known ends as declared
   value.head(data.layout.first_of_ends()) = fitted->plucks.value;
   const admittance_mode& mode = fitted->modes.front().mode;
   std::vector<found_start> out;
@@ -59,7 +64,8 @@ using known_starts = std::optional<std::vector<found_start>>;
 }
 
 /// The declared string with its releases where they are seen.
-inline std::optional<Eigen::VectorXd> declared_values(const scene_data& data) {
+template <class = void>
+std::optional<Eigen::VectorXd> declared_values(const scene_data& data) {
   auto start = find_start(data.takes, data.guess);
   if (!start) return std::nullopt;
   std::vector<double> position;
@@ -71,8 +77,9 @@ inline std::optional<Eigen::VectorXd> declared_values(const scene_data& data) {
 }
 
 /// Masses from a thirtieth of the string's to a third of it, each at the place where it explains most of the first echoes.
-inline void add_load_starts(const scene_data& data, const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise,
-                            std::vector<found_start>& out) {
+template <class = void>
+void add_load_starts(const scene_data& data, const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise,
+                     std::vector<found_start>& out) {
   const auto load =
       std::find_if(catalogue.begin(), catalogue.end(), [](const pluck_effect& e) { return e.name == "point-mass"; });
   const auto value = load == catalogue.end() ? std::nullopt : declared_values(data);
@@ -98,9 +105,10 @@ inline void add_load_starts(const scene_data& data, const std::vector<pluck_effe
 }
 
 /// `declared`: the fit of the declared model. A load is only sought in this way where that leaves much.
-inline std::vector<found_start> strong_starts(const scene_data& data, const scene_fit& declared,
-                                              const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise,
-                                              known_starts& of_supports) {
+template <class = void>
+std::vector<found_start> strong_starts(const scene_data& data, const scene_fit& declared,
+                                       const std::vector<pluck_effect>& catalogue, std::array<double, 2> noise,
+                                       known_starts& of_supports) {
   constexpr double much = 0.3;
   std::vector<pluck_effect> supports;
   std::copy_if(catalogue.begin(), catalogue.end(), std::back_inserter(supports),
@@ -111,5 +119,7 @@ inline std::vector<found_start> strong_starts(const scene_data& data, const scen
   if (!left.empty() && *std::max_element(left.begin(), left.end()) > much) add_load_starts(data, catalogue, noise, out);
   return out;
 }
+ROSIN_INSTANTIATE(std::vector<found_start> strong_starts(const scene_data&, const scene_fit&, const std::vector<pluck_effect>&,
+                                                         std::array<double, 2>, known_starts&))
 
 }  // namespace rosin::detail

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/calibrate/partial_search.hpp>
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 
 #include <algorithm>
@@ -27,7 +28,8 @@ struct foreign_peaks {
   double near_Hz = 0, bin_Hz = 0;        ///< so close to a partial of the string nothing is believed
 };
 
-inline foreign_peaks peaks_between(const Eigen::VectorXd& residual, double rate_Hz, const std::vector<double>& own_Hz) {
+template <class = void>
+foreign_peaks peaks_between(const Eigen::VectorXd& residual, double rate_Hz, const std::vector<double>& own_Hz) {
   constexpr double over_floor = 25, highest_partial = 24;
   if (own_Hz.empty()) return {};
   const double spacing = own_Hz.front();
@@ -102,7 +104,8 @@ inline std::vector<comb_of_peaks> foreign_combs(const foreign_peaks& found, cons
 }  // namespace detail
 
 /// Another string that rings along at one end; Z / M is that of its first mode.
-inline pluck_effect sympathetic_string_effect(const string_facts& f, int end) {
+template <class Real = double>
+pluck_effect sympathetic_string_effect(const string_facts& f, int end) {
   constexpr int most_modes = 100;  // as far as they can be told; a fit takes seconds with these
   const double Z = f.impedance_Ns_m > 0 ? f.impedance_Ns_m : 1.0, highest = f.highest_Hz;
   pluck_effect e{.name = "sympathetic-string",
@@ -123,7 +126,7 @@ inline pluck_effect sympathetic_string_effect(const string_facts& f, int end) {
     e.starts.push_back({ratio * f.fundamental_Hz, 1000, 1e-4 / Z, 2, 0});  // for what can be told of a rig in advance
   e.seek = [Z](const take_residual& rest) {
     std::vector<detail::comb_of_peaks> combs;
-    for (const Eigen::VectorXd& channel : rest.residual)
+    for (const Eigen::VectorX<Real>& channel : rest.residual)
       for (const auto& c : detail::foreign_combs(detail::peaks_between(channel, rest.rate_Hz, rest.own_Hz), rest.own_Hz))
         if (detail::is_new(combs, c.pitch_Hz)) combs.push_back(c);
     std::vector<std::vector<double>> starts;
@@ -134,5 +137,6 @@ inline pluck_effect sympathetic_string_effect(const string_facts& f, int end) {
   };
   return e;
 }
+ROSIN_INSTANTIATE(pluck_effect sympathetic_string_effect(const string_facts&, int))
 
 }  // namespace rosin

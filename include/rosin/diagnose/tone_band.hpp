@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick.hpp>
 
 namespace rosin {
@@ -43,13 +44,14 @@ struct tone_band {
 
 /// The pitch of a motion whose period at rest is `rest_s`, from samples `begin` to `end`: the lag from 0.97 to 1.4 of that period
 /// at which it is most like itself. Taken as measured where four fifths of its power repeat.
-[[nodiscard]] inline stroke_pitch pitch_of(std::span<const double> motion, std::size_t begin, std::size_t end, double rate_Hz,
-                                           double rest_s) {
+template <class Real = double>
+[[nodiscard]] stroke_pitch pitch_of(std::span<const double> motion, std::size_t begin, std::size_t end, double rate_Hz,
+                                    double rest_s) {
   constexpr double least = 0.8;
   const auto first = static_cast<std::size_t>(0.97 * rest_s * rate_Hz),
              last = static_cast<std::size_t>(1.4 * rest_s * rate_Hz) + 1;
   if (first < 2 || end < begin + 4 * last) return {1 / rest_s, false};
-  Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(motion.data() + begin, static_cast<Eigen::Index>(end - begin));
+  Eigen::VectorX<Real> x = Eigen::Map<const Eigen::VectorX<Real>>(motion.data() + begin, static_cast<Eigen::Index>(end - begin));
   if (!x.allFinite()) return {1 / rest_s, false};
   x.array() -= x.mean();
   const auto likeness = [&](std::size_t lag) {
@@ -66,9 +68,11 @@ struct tone_band {
   const double off = 0.5 * (left - right) / std::min(-1e-12, left - 2 * most + right);
   return {rate_Hz / (static_cast<double>(best) + off), true};
 }
+ROSIN_INSTANTIATE(stroke_pitch pitch_of(std::span<const double>, std::size_t, std::size_t, double, double))
 
 /// The pitches of a bench's strokes.
-[[nodiscard]] inline std::vector<stroke_pitch> pitches_of(stick_bench& bench) {
+template <class = void>
+[[nodiscard]] std::vector<stroke_pitch> pitches_of(stick_bench& bench) {
   std::vector<stroke_pitch> out;
   for (std::size_t t = 0; t < bench.records().size(); ++t) {
     const auto& r = bench.records()[t];
@@ -77,5 +81,6 @@ struct tone_band {
   }
   return out;
 }
+ROSIN_INSTANTIATE(std::vector<stroke_pitch> pitches_of(stick_bench&))
 
 }  // namespace rosin

@@ -36,6 +36,7 @@ class wide_record {
   using complex = std::complex<double>;
 
 public:
+  template <class = void>
   wide_record(const contact_take& take, const stick_record& record)
       : take_{take}, rod_m_s_{record.rod_m_s()}, edge_Hz_{record.window().edge_Hz},
         near_{record.known(take.near_N), take.rate_Hz}, far_{record.known(take.far_N), take.rate_Hz} {}

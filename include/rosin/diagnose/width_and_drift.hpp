@@ -9,6 +9,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_width.hpp>
 #include <rosin/diagnose/tension_drift.hpp>
 
@@ -44,11 +45,13 @@ public:
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return records_.size(); }
+  template <class = void>
   [[nodiscard]] double cost(std::size_t t, double half_delay_s, double relative) const {
     wide_record wide(at_tension(takes_[t], relative), records_[t]);
     return width_cost(wide.at(half_delay_s, records_[t].window(), at_tension(torsion_, relative), torsion_damping::constant_q, 1),
                       records_[t]);
   }
+  template <class = void>
   [[nodiscard]] double cost(double half_delay_s, double relative) const {
     double sum = 0;
     for (std::size_t t = 0; t < records_.size(); ++t) sum += cost(t, half_delay_s, relative);
@@ -60,13 +63,16 @@ public:
     return longest;
   }
   /// The drift that costs least at this width, near `start` or, if that is not known, anywhere.
+  template <class = void>
   [[nodiscard]] double drift_at(double half_delay_s, std::optional<double> start) const {
     const auto at = [&](double relative) { return cost(half_delay_s, relative); };
     return least_near(at, start ? *start : least_on_grid(at), step);
   }
+  template <class = void>
   [[nodiscard]] double drift_of(std::size_t take, double half_delay_s, double start) const {
     return least_near([&](double relative) { return cost(take, half_delay_s, relative); }, start, step);
   }
+  template <class = void>
   [[nodiscard]] double width_at(double relative) const {
     double best = 0, least = 1e300;
     for (double d = shortest_s; d < longest_half_delay_s(); d *= 1.2)
@@ -102,8 +108,9 @@ private:
 
 /// Nothing where the terminations' forces or the rod's speed are not given, or the bow is too near an end. Torsion: as declared, at
 /// the plucks' tension.
-[[nodiscard]] inline std::optional<width_and_drift> find_width_and_drift(const std::vector<contact_take>& takes,
-                                                                         const torsion_values& torsion) {
+template <class = void>
+[[nodiscard]] std::optional<width_and_drift> find_width_and_drift(const std::vector<contact_take>& takes,
+                                                                  const torsion_values& torsion) {
   for (const auto& t : takes)
     if (t.near_N.size() != t.force_N.size() || t.far_N.size() != t.force_N.size() || t.rod_speed_m_s == 0) return std::nullopt;
   if (takes.empty()) return std::nullopt;
@@ -124,5 +131,6 @@ private:
   out.sd = std::sqrt(square / static_cast<double>(search.size()));
   return out;
 }
+ROSIN_INSTANTIATE(std::optional<width_and_drift> find_width_and_drift(const std::vector<contact_take>&, const torsion_values&))
 
 }  // namespace rosin

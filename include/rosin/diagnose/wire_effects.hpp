@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_effect.hpp>
 
 #include <algorithm>
@@ -18,7 +19,8 @@ inline constexpr double ordinary_release_s = 4e-6;
 
 /// The wire lets go over a time, `each` pluck over its own. What was taken for the instant of release is its middle. Not as a
 /// logarithm: what a fit knows best is the middle, a straight line in instant and duration.
-inline pluck_effect slow_release_effect(const string_facts& f, bool each = false) {
+template <class Real = double>
+pluck_effect slow_release_effect(const string_facts& f, bool each = false) {
   const std::size_t count = each ? f.takes : 1;
   pluck_effect e{.name = "slow-release",
                  .strength = -1,
@@ -31,12 +33,13 @@ inline pluck_effect slow_release_effect(const string_facts& f, bool each = false
   e.is_ordinary = [](const std::vector<double>& v) {
     return std::all_of(v.begin(), v.end(), [](double duration_s) { return duration_s < ordinary_release_s; });
   };
-  e.rebase = [each, first = static_cast<Eigen::Index>(count)](const pluck_layout& layout, Eigen::VectorXd& v) {
+  e.rebase = [each, first = static_cast<Eigen::Index>(count)](const pluck_layout& layout, Eigen::VectorX<Real>& v) {
     for (std::size_t t = 0; t < layout.takes(); ++t)
       v[layout.at(t, pluck_layout::release)] -= v[v.size() - first + static_cast<Eigen::Index>(each ? t : 0)] / 2;
   };
   return e;
 }
+ROSIN_INSTANTIATE(pluck_effect slow_release_effect(const string_facts&, bool))
 
 /// The wire grips the string over a width.
 inline pluck_effect pluck_width_effect(const string_facts& f) {

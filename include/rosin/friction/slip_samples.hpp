@@ -12,6 +12,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/friction/contact_heat.hpp>
 #include <rosin/friction/slip_phases.hpp>
 
@@ -29,9 +30,10 @@ struct slip_samples {
 };
 
 /// Samples `margin` inside the slips. The arrays (force, surface less rod) have one length.
-[[nodiscard]] inline slip_samples slips_of(std::span<const double> force_N, std::span<const double> relative_m_s,
-                                           const contact_phases& phases, double rod_speed_m_s, double normal_N, std::size_t begin,
-                                           std::size_t margin) {
+template <class = void>
+[[nodiscard]] slip_samples slips_of(std::span<const double> force_N, std::span<const double> relative_m_s,
+                                    const contact_phases& phases, double rod_speed_m_s, double normal_N, std::size_t begin,
+                                    std::size_t margin) {
   slip_samples out;
   const double way = rod_speed_m_s < 0 ? -1.0 : 1.0;
   const auto inside = interior(phases.slips, relative_m_s.size(), margin);
@@ -47,6 +49,8 @@ struct slip_samples {
   }
   return out;
 }
+ROSIN_INSTANTIATE(slip_samples slips_of(std::span<const double>, std::span<const double>, const contact_phases&, double, double,
+                                        std::size_t, std::size_t))
 
 /// Samples that stand in for what happened before the first slip that is known: as many as lie before it, from there on. A
 /// contact that was taken to be cold there would need several periods to be as warm as it is.
@@ -100,8 +104,9 @@ public:
   }
 
   /// One row for each x; what lies outside the knots is taken at their ends.
+  template <class Real = double>
   [[nodiscard]] Eigen::MatrixXd operator()(const Eigen::VectorXd& x) const {
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(x.size(), functions_);
+    Eigen::MatrixX<Real> out = Eigen::MatrixX<Real>::Zero(x.size(), functions_);
     for (Eigen::Index i = 0; i < x.size(); ++i) fill(x[i], [&](int k, double value) { out(i, k) = value; });
     return out;
   }

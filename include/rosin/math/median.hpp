@@ -17,8 +17,9 @@ namespace rosin {
   const Eigen::Index n = v.size();
   return n == 0 ? 0.0 : n % 2 == 1 ? v[n / 2] : (v[n / 2 - 1] + v[n / 2]) / 2;
 }
-[[nodiscard]] inline double median_of(std::span<const double> v) {
-  return median_of(Eigen::VectorXd(Eigen::VectorXd::Map(v.data(), static_cast<Eigen::Index>(v.size()))));
+template <class Real = double>
+[[nodiscard]] double median_of(std::span<const double> v) {
+  return median_of(Eigen::VectorX<Real>(Eigen::VectorX<Real>::Map(v.data(), static_cast<Eigen::Index>(v.size()))));
 }
 
 }  // namespace rosin

@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/math/fft.hpp>
 
 #include <algorithm>
@@ -53,7 +54,8 @@ namespace detail {
 }
 
 /// Amplitudes at the bins of a transform of the windowed samples, padded to at least twice their length.
-[[nodiscard]] inline std::vector<double> amplitude_bins(std::vector<double> windowed, std::size_t& size) {
+template <class = void>
+[[nodiscard]] std::vector<double> amplitude_bins(std::vector<double> windowed, std::size_t& size) {
   const double scale = 2 / static_cast<double>(windowed.size());
   size = fast_size(2 * windowed.size());
   windowed.resize(size, 0.0);
@@ -85,8 +87,9 @@ namespace detail {
 }  // namespace detail
 
 /// The strongest lines between two frequencies, strongest first; none that is a side lobe of a stronger one.
-[[nodiscard]] inline std::vector<spectrum_line> strongest_lines(std::span<const double> x, double sample_rate_Hz, double low_Hz,
-                                                                double high_Hz, std::size_t count) {
+template <class = void>
+[[nodiscard]] std::vector<spectrum_line> strongest_lines(std::span<const double> x, double sample_rate_Hz, double low_Hz,
+                                                         double high_Hz, std::size_t count) {
   std::vector<spectrum_line> out;
   if (x.size() < 16) return out;
   std::size_t size = 0;
@@ -104,5 +107,6 @@ namespace detail {
   }
   return detail::main_lobes(std::move(out), sample_rate_Hz / static_cast<double>(x.size()), 1e-12 * largest, count);
 }
+ROSIN_INSTANTIATE(std::vector<spectrum_line> strongest_lines(std::span<const double>, double, double, double, std::size_t))
 
 }  // namespace rosin

@@ -15,6 +15,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/propagate/fir.hpp>
 #include <rosin/propagate/transmission.hpp>
 
@@ -31,8 +32,9 @@ enum class airy_form {
 };
 
 /// d(t) in 1/s, t in s after the pulse left; 0 for t <= 0. Relative rms error over the pulse about 0.06 xb^(-4/3).
-[[nodiscard]] inline double airy_transmission(double t_s, double delay_s, double stiffness_s2,
-                                              airy_form form = airy_form::transmission) {
+template <class = void>
+[[nodiscard]] double airy_transmission(double t_s, double delay_s, double stiffness_s2,
+                                       airy_form form = airy_form::transmission) {
   if (t_s <= 0) return 0;
   const double tb = t_s / std::sqrt(stiffness_s2), tau = t_s / delay_s;
   const double K = (1 - 4 * tau * tau + std::sqrt(1 + 8 * tau * tau)) / (8 * tau * tau);
@@ -42,11 +44,13 @@ enum class airy_form {
   const double v = argument > 100 ? 0.0 : front * boost::math::airy_ai(argument);
   return 2 * v / std::sqrt(stiffness_s2) / (form == airy_form::transmission ? tau : 1.0);
 }
+ROSIN_INSTANTIATE(double airy_transmission(double, double, double, airy_form))
 
 /// FIR kernel from the Airy formula: evaluated `oversampling` times too often, band-limited, then decimated; sampled directly
 /// at the rate it would alias beyond use. Lossless, as the formula is.
-[[nodiscard]] inline fir airy_kernel(double delay_s, double stiffness_s2, const band& limits, double rate_Hz,
-                                     airy_form form = airy_form::transmission, int oversampling = 32) {
+template <class = void>
+[[nodiscard]] fir airy_kernel(double delay_s, double stiffness_s2, const band& limits, double rate_Hz,
+                              airy_form form = airy_form::transmission, int oversampling = 32) {
   const double fine_Hz = rate_Hz * oversampling;
   const passage_lags lags = lags_of_passage(delay_s, stiffness_s2, limits, rate_Hz);
   const int margin = lags.last - static_cast<int>(delay_s * rate_Hz);
@@ -76,5 +80,6 @@ enum class airy_form {
   }
   return out;
 }
+ROSIN_INSTANTIATE(fir airy_kernel(double, double, const band&, double, airy_form, int))
 
 }  // namespace rosin

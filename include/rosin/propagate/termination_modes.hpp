@@ -62,6 +62,7 @@ public:
     differ_ = {wanted_, all_};
   }
 
+  template <class = void>
   [[nodiscard]] modal_likeness run() {
     for (int in_vain = 0;
          in_vain < 2 && all_ > 0 && mismatch() > limits_.tolerance && static_cast<int>(modes_.size()) < limits_.modes;) {
@@ -139,6 +140,7 @@ private:
   }
 
   /// Steps of Levenberg and Marquardt as long as they help.
+  template <class Real = double>
   void polish() {
     differ_ = missed_by(modes_);
     double damping = 1e-3;
@@ -146,9 +148,9 @@ private:
       auto [normal, pull] = linearised();
       normal.diagonal() *= 1 + damping;
       normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
-      const Eigen::VectorXd change = normal.ldlt().solve(pull);
+      const Eigen::VectorX<Real> change = normal.ldlt().solve(pull);
       auto tried = modes_;
-      for (std::size_t m = 0; m < tried.size(); ++m) move(tried[m], change.segment<3>(static_cast<Eigen::Index>(3 * m)));
+      for (std::size_t m = 0; m < tried.size(); ++m) move(tried[m], change.template segment<3>(static_cast<Eigen::Index>(3 * m)));
       auto left = missed_by(tried);
       const bool better = left.sum < differ_.sum;
       failed = better ? 0 : failed + 1, damping *= better ? 0.2 : 10;
@@ -164,10 +166,11 @@ private:
     m.q = std::clamp(m.q * by(1, 1), limits_.least_q, 2000.0);
     m.per_mass_per_s *= by(2, 2);
   }
+  template <class Real = double>
   [[nodiscard]] std::pair<Eigen::MatrixXd, Eigen::VectorXd> linearised() const {
     const auto n = static_cast<Eigen::Index>(3 * modes_.size());
-    Eigen::MatrixXd rows(n, static_cast<Eigen::Index>(2 * s_.size()));
-    Eigen::VectorXd missed(rows.cols());
+    Eigen::MatrixX<Real> rows(n, static_cast<Eigen::Index>(2 * s_.size()));
+    Eigen::VectorX<Real> missed(rows.cols());
     for (std::size_t k = 0; k < s_.size(); ++k) {
       const auto at = static_cast<Eigen::Index>(2 * k);
       missed[at] = differ_.of_reflection[k].real(), missed[at + 1] = differ_.of_reflection[k].imag();

@@ -49,6 +49,7 @@ public:
     return (by_level / complex(0, 1) + s * by_slope) / std::numbers::pi + beyond(s);
   }
   /// z at 0, step, 2 step, ... Hz, by two transforms: the even response of the real part, folded onto t > 0.
+  template <class = void>
   [[nodiscard]] std::vector<complex> on_grid(double step_Hz, std::size_t count) const {
     std::size_t n = 1024;
     while (static_cast<double>(n) * step_Hz <

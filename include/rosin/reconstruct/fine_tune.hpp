@@ -37,7 +37,8 @@ namespace detail {
 
 inline constexpr std::array<Eigen::Index, 3> tuned_parameters{0, 1, 5};
 
-[[nodiscard]] inline Eigen::Matrix3d allowed_covariance(const calibration& c, const drift_allowance& allowed) {
+template <class = void>
+[[nodiscard]] Eigen::Matrix3d allowed_covariance(const calibration& c, const drift_allowance& allowed) {
   const double one_way = c.at.delay_s[0] + c.at.delay_s[1];
   const Eigen::Vector3d stretch{c.at.delay_s[0] * allowed.stretch, c.at.delay_s[1] * allowed.stretch, 0};
   const Eigen::Vector3d shift{one_way * allowed.position, -one_way * allowed.position, 0};

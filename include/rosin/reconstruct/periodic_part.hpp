@@ -14,6 +14,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_start.hpp>
+#include <rosin/core/instantiate.hpp>
 
 #include <Eigen/Dense>
 
@@ -37,9 +38,10 @@ struct periodic_part {
 namespace detail {
 
 /// Least-squares Fourier series of x[begin, end) with a period, up to harmonic H; returns the power left over.
-inline double fit_series(std::span<const double> x, double period, int H, Eigen::VectorXcd* series) {
+template <class Real = double>
+double fit_series(std::span<const double> x, double period, int H, Eigen::VectorXcd* series) {
   const auto N = static_cast<Eigen::Index>(x.size());
-  Eigen::MatrixXd basis(N, 2 * H + 1);
+  Eigen::MatrixX<Real> basis(N, 2 * H + 1);
   basis.col(0).setOnes();
   for (int h = 1; h <= H; ++h) {
     const std::complex<double> step = std::polar(1.0, 2 * std::numbers::pi * h / period);
@@ -49,10 +51,10 @@ inline double fit_series(std::span<const double> x, double period, int H, Eigen:
       basis(n, 2 * h) = -z.imag();
     }
   }
-  const Eigen::Map<const Eigen::VectorXd> data(x.data(), N);
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(2 * H + 1, 2 * H + 1);
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(basis.transpose());
-  const Eigen::VectorXd c = gram.selfadjointView<Eigen::Lower>().ldlt().solve(basis.transpose() * data);
+  const Eigen::Map<const Eigen::VectorX<Real>> data(x.data(), N);
+  Eigen::MatrixX<Real> gram = Eigen::MatrixX<Real>::Zero(2 * H + 1, 2 * H + 1);
+  gram.template selfadjointView<Eigen::Lower>().rankUpdate(basis.transpose());
+  const Eigen::VectorX<Real> c = gram.template selfadjointView<Eigen::Lower>().ldlt().solve(basis.transpose() * data);
   if (series != nullptr) {
     series->resize(H + 1);
     (*series)[0] = c[0];
@@ -98,9 +100,9 @@ inline std::size_t steadiest(std::span<const double> x, double period, std::size
 }  // namespace detail
 
 /// Finds the stretch of `periods` periods near 1/nominal_Hz (within 15 %: friction flattens) that repeats best, in both channels.
-[[nodiscard]] inline outcome<periodic_part> find_periodic_part(std::span<const double> near, std::span<const double> far,
-                                                               double rate_Hz, double nominal_Hz, double highest_Hz,
-                                                               int periods = 7) {
+template <class = void>
+[[nodiscard]] outcome<periodic_part> find_periodic_part(std::span<const double> near, std::span<const double> far, double rate_Hz,
+                                                        double nominal_Hz, double highest_Hz, int periods = 7) {
   const double rough = rate_Hz / nominal_Hz;
   if (static_cast<double>(near.size()) < (periods + 3) * rough)
     return failure{"the take is shorter than " + std::to_string(periods + 3) + " periods"};
@@ -143,5 +145,7 @@ inline std::size_t steadiest(std::span<const double> x, double period, std::size
                    std::to_string(static_cast<int>(100 * out.remainder)) + " % of the signal is not periodic"};
   return out;
 }
+ROSIN_INSTANTIATE(outcome<periodic_part> find_periodic_part(std::span<const double>, std::span<const double>, double, double,
+                                                            double, int))
 
 }  // namespace rosin

@@ -25,7 +25,8 @@ struct reconstruction_sensitivity {
 namespace detail {
 
 /// Steps for central differences, in the units of the waveform parameters.
-[[nodiscard]] inline waveform_vector derivative_steps(const calibration& c) {
+template <class = void>
+[[nodiscard]] waveform_vector derivative_steps(const calibration& c) {
   const double longest = std::max(c.at.delay_s[0], c.at.delay_s[1]);
   waveform_vector step;
   step << 1e-5 * longest, 1e-5 * longest, std::max(1e-4 * c.at.stiffness_s2, 1e-18), 1e-6, 1e-12, 0;

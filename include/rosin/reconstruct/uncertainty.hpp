@@ -30,26 +30,28 @@ struct reconstruction_uncertainty {
 namespace detail {
 
 /// Taps of a weighted sum of the four outputs' kernels from one input.
-[[nodiscard]] inline Eigen::VectorXd combined_taps(const std::vector<fir>& kernels, const std::array<double, 4>& weight,
-                                                   std::size_t input) {
+template <class Real = double>
+[[nodiscard]] Eigen::VectorXd combined_taps(const std::vector<fir>& kernels, const std::array<double, 4>& weight,
+                                            std::size_t input) {
   const std::size_t inputs = kernels.size() / 4;
   int first = 0, last = 0;
   for (std::size_t p = 0; p < 4; ++p) {
     first = std::min(first, kernels[inputs * p + input].first);
     last = std::max(last, kernels[inputs * p + input].last());
   }
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(last - first + 1);
+  Eigen::VectorX<Real> sum = Eigen::VectorX<Real>::Zero(last - first + 1);
   for (std::size_t p = 0; p < 4; ++p) {
     const fir& k = kernels[inputs * p + input];
     const auto count = static_cast<Eigen::Index>(k.taps.size());
-    sum.segment(k.first - first, count) += weight[p] * Eigen::VectorXd::Map(k.taps.data(), count);
+    sum.segment(k.first - first, count) += weight[p] * Eigen::VectorX<Real>::Map(k.taps.data(), count);
   }
   return sum;
 }
 
 /// Standard deviation of a weighted sum of the outputs for white noise in both inputs.
-[[nodiscard]] inline double noise_through(const std::vector<fir>& kernels, const std::array<double, 4>& weight,
-                                          const std::array<double, 2>& noise) {
+template <class = void>
+[[nodiscard]] double noise_through(const std::vector<fir>& kernels, const std::array<double, 4>& weight,
+                                   const std::array<double, 2>& noise) {
   return std::hypot(noise[0] * combined_taps(kernels, weight, 0).norm(), noise[1] * combined_taps(kernels, weight, 1).norm());
 }
 

@@ -10,6 +10,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/simulate/burdened_sensors.hpp>
 #include <rosin/simulate/burdened_take.hpp>
 #include <rosin/simulate/modal_pluck.hpp>
@@ -76,6 +77,7 @@ struct burdened_steps_of_take {
   modal_decimator decimate;
   std::size_t samples;
 
+  template <class = void>
   burdened_steps_of_take(const modal_settings& s, double duration_s)
       : step_s{1 / (s.sample_rate_Hz * s.oversampling)}, limit_Hz{std::min(s.mode_limit_Hz, 0.49 / step_s)},
         decimate{s.low_pass(), step_s, s.oversampling}, samples{static_cast<std::size_t>(
@@ -86,6 +88,7 @@ struct burdened_steps_of_take {
   /// So long that exactly these steps are taken.
   [[nodiscard]] double duration_s() const noexcept { return (static_cast<double>(steps_) + 0.5) * step_s; }
 
+  template <class = void>
   [[nodiscard]] modal_take sampled(const burdened_steps& all, double rate_Hz) const {
     modal_take take{
         .sample_rate_Hz = rate_Hz, .force_near_N = decimate.points(all.end_N[0]), .force_far_N = decimate.points(all.end_N[1])};
@@ -108,8 +111,9 @@ private:
 };
 
 /// A pluck in two planes, as the sensors see it.
-[[nodiscard]] inline burdened_steps step_in_two_planes(const modal_rig& rig, const rig_burden& burden, const burdened_pluck& wire,
-                                                       const burdened_steps_of_take& how) {
+template <class = void>
+[[nodiscard]] burdened_steps step_in_two_planes(const modal_rig& rig, const rig_burden& burden, const burdened_pluck& wire,
+                                                const burdened_steps_of_take& how) {
   auto other = rig;
   other.string.fundamental_Hz *= 1 + burden.detuning;
   other.string.tension_N *= std::pow(1 + burden.detuning, 2);
@@ -131,8 +135,9 @@ private:
 }  // namespace detail
 
 /// A pluck of a burdened rig; fails where rig, burden, pluck or settings make no sense.
-[[nodiscard]] inline outcome<modal_take> simulate_pluck(const modal_rig& rig, const rig_burden& burden, const modal_pluck& pluck,
-                                                        const modal_settings& settings = {}) {
+template <class = void>
+[[nodiscard]] outcome<modal_take> simulate_pluck(const modal_rig& rig, const rig_burden& burden, const modal_pluck& pluck,
+                                                 const modal_settings& settings = {}) {
   for (const auto& problem :
        {problem_with(rig, pluck.position), problem_with(settings), problem_with_duration(pluck.duration_s, settings),
         detail::problem_with(burden, rig, pluck.position)})
@@ -153,6 +158,8 @@ private:
   disturb(steps.end_N, burden.sensors, how.step_s, how.lead_s);
   return how.sampled(steps, settings.sample_rate_Hz);
 }
+ROSIN_INSTANTIATE(outcome<modal_take> simulate_pluck(const modal_rig&, const rig_burden&, const modal_pluck&,
+                                                     const modal_settings&))
 
 /// A stroke of a burdened rig; fails where rig, burden, stroke or settings make no sense.
 template <FrictionLaw Law, RodMotion Motion>

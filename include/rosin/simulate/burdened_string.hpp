@@ -50,6 +50,7 @@ struct string_burden {
 class burdened_string {
 public:
   /// Forces may act on the string at `contacts` (distance from the near end / length).
+  template <class = void>
   burdened_string(const modal_rig& rig, const string_burden& burden, const std::vector<double>& contacts, double mode_limit_Hz,
                   double step_s)
       : stretch_{rig.string.tension_N / rig.string.length_m}, step_{step_s}, contacts_{static_cast<int>(contacts.size())},
@@ -64,26 +65,27 @@ public:
   }
 
   /// At rest under these forces at the contacts.
+  template <class Real = double>
   void rest_under(const Eigen::VectorXd& force) {
     const int n = unknowns(), l = load_count();
     // x: the loads' forces, the supports' displacements
-    const auto miss = [&](const Eigen::VectorXd& x, const Eigen::VectorXd& f) {
-      const Eigen::VectorXd y = deflection(f, x);
-      Eigen::VectorXd r(n);
+    const auto miss = [&](const Eigen::VectorX<Real>& x, const Eigen::VectorX<Real>& f) {
+      const Eigen::VectorX<Real> y = deflection(f, x);
+      Eigen::VectorX<Real> r(n);
       for (int i = 0; i < l; ++i) r[i] = x[i] + loads_[static_cast<std::size_t>(i)].load.stiffness_N_m * y[contacts_ + i];
       for (int i = l; i < n; ++i) r[i] = end(i - l).stiffness() * x[i] - y[contacts_ + i];
       return r;
     };
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    Eigen::VectorX<Real> x = Eigen::VectorX<Real>::Zero(n);
     if (n > 0) {
-      const Eigen::VectorXd none = Eigen::VectorXd::Zero(contacts_), base = miss(x, force);
-      Eigen::MatrixXd a(n, n);
-      for (int i = 0; i < n; ++i) a.col(i) = miss(Eigen::VectorXd::Unit(n, i), none);
+      const Eigen::VectorX<Real> none = Eigen::VectorX<Real>::Zero(contacts_), base = miss(x, force);
+      Eigen::MatrixX<Real> a(n, n);
+      for (int i = 0; i < n; ++i) a.col(i) = miss(Eigen::VectorX<Real>::Unit(n, i), none);
       x = a.partialPivLu().solve(-base);
     }
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(contacts_ + n);
-    all << force, x.head(l), Eigen::VectorXd::Zero(n - l);
-    const Eigen::VectorXd y = deflection(force, x);
+    Eigen::VectorX<Real> all = Eigen::VectorX<Real>::Zero(contacts_ + n);
+    all << force, x.head(l), Eigen::VectorX<Real>::Zero(n - l);
+    const Eigen::VectorX<Real> y = deflection(force, x);
     for (int i = 0; i < l; ++i) loads_[static_cast<std::size_t>(i)].y = y[contacts_ + i];
     for (int i = l; i < n; ++i) ends_[static_cast<std::size_t>(i - l)].rest_at(x[i]);
     bank_.rest_under(all);
@@ -92,6 +94,7 @@ public:
   }
 
   /// Velocities that the contacts would have at the end of this step without force there; centre and twist together.
+  template <class = void>
   [[nodiscard]] Eigen::VectorXd free_velocity() {
     if (unknowns() == 0) return free_.head(contacts_);
     answer_ = solve_ * known_side();
@@ -101,8 +104,14 @@ public:
   [[nodiscard]] const Eigen::MatrixXd& mobility() const noexcept { return contact_mobility_; }
 
   /// What the modes left out add to the motion of the contacts, times the rate of the force there: centre, twist; m/N.
-  [[nodiscard]] Eigen::VectorXd centre_left_out_m_N() const { return (rest_ - rest_twist_).head(contacts_); }
-  [[nodiscard]] Eigen::VectorXd twist_left_out_m_N() const { return rest_twist_.head(contacts_); }
+  template <class = void>
+  [[nodiscard]] Eigen::VectorXd centre_left_out_m_N() const {
+    return (rest_ - rest_twist_).head(contacts_);
+  }
+  template <class = void>
+  [[nodiscard]] Eigen::VectorXd twist_left_out_m_N() const {
+    return rest_twist_.head(contacts_);
+  }
 
   /// What the motion adds to the tension, and what else is to be added to it (port_bank.hpp).
   [[nodiscard]] double raised_N() const noexcept { return bank_.raised_N(); }
@@ -113,15 +122,16 @@ public:
     Eigen::VectorXd surface_m_s, twist_m_s;  ///< at the contacts, of the modes alone; the centre moves with the difference
   };
   /// After free_velocity(): ends the step with these forces at the contacts and begins the next.
+  template <class Real = double>
   reading advance(const Eigen::VectorXd& force) {
-    Eigen::VectorXd all(contacts_ + unknowns());
+    Eigen::VectorX<Real> all(contacts_ + unknowns());
     all.head(contacts_) = force;
     if (unknowns() > 0) all.tail(unknowns()) = answer_ - solve_ * (drive_ * force);
-    const Eigen::VectorXd v = free_ + mobility_ * all;
+    const Eigen::VectorX<Real> v = free_ + mobility_ * all;
     move(v, all);
-    const Eigen::VectorXd rate = (force - last_.head(contacts_)) / step_;
+    const Eigen::VectorX<Real> rate = (force - last_.head(contacts_)) / step_;
     reading out{free_end_ + end_gain_ * all, v.head(contacts_) - rest_.head(contacts_).cwiseProduct(rate),
-                Eigen::VectorXd(contacts_)};
+                Eigen::VectorX<Real>(contacts_)};
     Eigen::Vector2d u = Eigen::Vector2d::Zero();
     for (const auto& m : ends_) u[m.side] = m.sum(&moving_mode::u);
     out.end_N += stretch_ * Eigen::Vector2d{u[1] - u[0], u[0] - u[1]};
@@ -135,8 +145,9 @@ public:
 
   /// After advance() with these forces at the contacts: they are gone at once. Returns by how much the forces on the ends fall
   /// with them, which is the share of the modes left out.
+  template <class Real = double>
   Eigen::Vector2d let_go(const Eigen::VectorXd& force) {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(contacts_ + unknowns());
+    Eigen::VectorX<Real> all = Eigen::VectorX<Real>::Zero(contacts_ + unknowns());
     all.head(contacts_) = force;
     bank_.let_go(all);
     last_.head(contacts_) -= force;
@@ -164,9 +175,10 @@ private:
     return e.side == 0 ? 1 - x : x;
   }
 
+  template <class Real = double>
   void set_ports(const modal_rig& rig) {
     const int p = points(), all = contacts_ + unknowns();
-    Eigen::MatrixXd shape(bank_.size(), all);
+    Eigen::MatrixX<Real> shape(bank_.size(), all);
     for (int j = 0; j < p; ++j) shape.col(j) = bank_.at(positions_[static_cast<std::size_t>(j)], j < contacts_);
     for (int j = p; j < all; ++j) shape.col(j) = bank_.at_end(end(j - p).side);
     bank_.set_ports(std::move(shape));
@@ -177,14 +189,15 @@ private:
       mobility_(i, i) += rest_[i] / step_;
       for (int j = p; j < all; ++j) mobility_(i, j) -= step_ / 2 * lift(i, end(j - p));
     }
-    last_ = Eigen::VectorXd::Zero(p);
+    last_ = Eigen::VectorX<Real>::Zero(p);
   }
 
   /// Modes above the limit answer quasi-statically: compliance at the points, share of the forces at the ends.
+  template <class Real = double>
   void set_left_out(const modal_rig& rig) {
     const int p = points(), all = contacts_ + unknowns();
     const double string_mass = rig.string.linear_density_kg_m() * rig.string.length_m;
-    rest_ = Eigen::VectorXd::Zero(p), rest_twist_ = rest_, rest_end_ = -bank_.share;
+    rest_ = Eigen::VectorX<Real>::Zero(p), rest_twist_ = rest_, rest_end_ = -bank_.share;
     for (int j = 0; j < p; ++j) {
       const double x = positions_[static_cast<std::size_t>(j)];
       const auto held = static_end_forces(rig.string, x, clamping_);
@@ -203,12 +216,13 @@ private:
     }
   }
 
+  template <class Real = double>
   void set_system() {
     const int l = load_count(), n = unknowns(), c = contacts_;
     contact_mobility_ = mobility_.topLeftCorner(c, c);
     if (n == 0) return;
     across_ = mobility_.block(0, c, c, n);
-    Eigen::MatrixXd a(n, n);
+    Eigen::MatrixX<Real> a(n, n);
     drive_.setZero(n, c);
     for (int i = 0; i < l; ++i) {
       const double by = loads_[static_cast<std::size_t>(i)].alpha(step_);
@@ -251,6 +265,7 @@ private:
   }
 
   /// The free state at the end of the coming step: modes, what the modes left out take back, and where the ends carry the string.
+  template <class = void>
   void read() {
     bank_.read_free(free_, free_end_);
     for (int i = 0; i < points(); ++i) {
@@ -260,9 +275,10 @@ private:
   }
 
   /// Statically: rise of the points, then force on the yielding ends less nothing but the string's.
+  template <class Real = double>
   [[nodiscard]] Eigen::VectorXd deflection(const Eigen::VectorXd& force, const Eigen::VectorXd& x) const {
     const int p = points(), n = unknowns(), l = load_count();
-    Eigen::VectorXd f(p), y(contacts_ + n);
+    Eigen::VectorX<Real> f(p), y(contacts_ + n);
     f << force, x.head(l);
     y.head(p) = bank_.compliance.topLeftCorner(p, p) * f + rest_.cwiseProduct(f);
     for (int i = 0; i < p; ++i)

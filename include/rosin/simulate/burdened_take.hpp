@@ -7,6 +7,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/simulate/burdened_string.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
@@ -78,14 +79,15 @@ private:
 /// would fall towards high frequencies by another amount (a thousandth at 50 kHz and 0.5 us), as no two releases lie alike
 /// between the steps. `across_N`: what motion in another plane adds to the tension, step by step (of the last one from there on);
 /// needs E A.
-[[nodiscard]] inline burdened_steps step_pluck(const modal_rig& rig, const string_burden& burden, const burdened_pluck& pluck,
-                                               double duration_s, double mode_limit_Hz, double step_s,
-                                               std::span<const double> across_N = {}) {
+template <class Real = double>
+[[nodiscard]] burdened_steps step_pluck(const modal_rig& rig, const string_burden& burden, const burdened_pluck& pluck,
+                                        double duration_s, double mode_limit_Hz, double step_s,
+                                        std::span<const double> across_N = {}) {
   const auto grip = grip_of(pluck, rig.string.length_m);
   const bool guarded = burden.stop.stiffness_N_m > 0;
   const auto wires = static_cast<Eigen::Index>(grip.size()), contacts = wires + (guarded ? 1 : 0);
   std::vector<double> at;
-  Eigen::VectorXd share = Eigen::VectorXd::Zero(contacts);
+  Eigen::VectorX<Real> share = Eigen::VectorX<Real>::Zero(contacts);
   for (const auto& [position, part] : grip) share[static_cast<Eigen::Index>(at.size())] = part, at.push_back(position);
   if (guarded) at.push_back(burden.stop.position);
   burdened_string string{rig, burden, at, mode_limit_Hz, step_s};
@@ -101,8 +103,8 @@ private:
   for (std::size_t n = 0; n < steps; ++n) {
     double force = sudden ? (n <= release ? pluck.force_N : 0) : wire_force(pluck, static_cast<double>(n) * step_s);
     if (!across_N.empty()) string.add_tension(across_N[std::min(n, across_N.size() - 1)]);
-    const Eigen::VectorXd free = string.free_velocity();
-    Eigen::VectorXd forces = share * force;
+    const Eigen::VectorX<Real> free = string.free_velocity();
+    Eigen::VectorX<Real> forces = share * force;
     if (guarded)
       forces[wires] =
           point.force_N(free[wires] + string.mobility().row(wires).dot(share) * force, string.mobility()(wires, wires), step_s);
@@ -116,18 +118,23 @@ private:
   }
   return out;
 }
+ROSIN_INSTANTIATE(burdened_steps step_pluck(const modal_rig&, const string_burden&, const burdened_pluck&, double, double, double,
+                                            std::span<const double>))
 
 /// A pluck that moves a string in two planes, which differ in pitch: what each of them does by itself. Where motion stretches the
 /// string, each also feels what the other's adds to the tension; the first is stepped once more with what the second then does.
-[[nodiscard]] inline std::array<burdened_steps, 2> step_planes(const modal_rig& along, const burdened_pluck& wire,
-                                                               const modal_rig& across, const burdened_pluck& other,
-                                                               const string_burden& burden, double duration_s,
-                                                               double mode_limit_Hz, double step_s) {
+template <class = void>
+[[nodiscard]] std::array<burdened_steps, 2> step_planes(const modal_rig& along, const burdened_pluck& wire,
+                                                        const modal_rig& across, const burdened_pluck& other,
+                                                        const string_burden& burden, double duration_s, double mode_limit_Hz,
+                                                        double step_s) {
   std::array<burdened_steps, 2> out{step_pluck(along, burden, wire, duration_s, mode_limit_Hz, step_s), {}};
   out[1] = step_pluck(across, burden, other, duration_s, mode_limit_Hz, step_s, out[0].raised_N);
   if (burden.axial_stiffness_N > 0) out[0] = step_pluck(along, burden, wire, duration_s, mode_limit_Hz, step_s, out[1].raised_N);
   return out;
 }
+ROSIN_INSTANTIATE(std::array<burdened_steps, 2> step_planes(const modal_rig&, const burdened_pluck&, const modal_rig&,
+                                                            const burdened_pluck&, const string_burden&, double, double, double))
 
 /// The rod's or bow's own give: a mass on a spring along its motion. None where the mass is 0.
 using yielding_rod = yielding_support;

@@ -30,6 +30,7 @@ namespace rosin {
 struct step_energy {
   Eigen::Matrix4d received = Eigen::Matrix4d::Zero(), lost = Eigen::Matrix4d::Zero();
 
+  template <class = void>
   step_energy(const string_mode& mode, double step_s) {
     constexpr int panels = 8;
     const double drag = mode.mass_kg * mode.omega_rad_s * mode.inverse_quality;
@@ -48,6 +49,7 @@ struct step_energy {
 /// Follows all modes of one kind, numbered from 1 without gaps, while a force acts at a place that may change.
 class energy_account {
 public:
+  template <class = void>
   energy_account(std::vector<string_mode> modes, double step_s) : modes_{std::move(modes)}, step_{step_s} {
     for (std::size_t n = 0; n < modes_.size(); ++n) {
       if (n % width == 0) lanes_.emplace_back();
@@ -60,6 +62,7 @@ public:
   }
 
   /// Goes on by as many steps as there are forces; `position`: at these steps, or one for all.
+  template <class = void>
   void follow(std::span<const double> force_N, std::span<const double> position) {
     for (std::size_t first = 0; first < force_N.size(); first += block) {
       const auto count = std::min(block, force_N.size() - first);
@@ -68,6 +71,7 @@ public:
     }
   }
 
+  template <class = void>
   [[nodiscard]] motion_energy total() const {
     motion_energy sum;
     for (std::size_t n = 0; n < modes_.size(); ++n) {
@@ -104,6 +108,7 @@ private:
     double turn_sine = 0, turn_cosine = 1;
   };
 
+  template <class = void>
   void set_shape(std::size_t i, double position) {
     constexpr double pi = 3.14159265358979323846;
     auto& s = shapes_[i];
@@ -118,6 +123,7 @@ private:
     first_ = s;
   }
 
+  template <class = void>
   void run(lane& l, std::span<const double> force_N) {
     auto [re, im, g] = l.x;
     auto sums = l.products;

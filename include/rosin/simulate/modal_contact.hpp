@@ -30,6 +30,7 @@ struct modes_left_out {
 
 class modal_contact {
 public:
+  template <class = void>
   modal_contact(const modal_rig& rig, double position, double mode_limit_Hz, double step_s)
       : rig_{rig}, step_{step_s}, transverse_{transverse_modes(rig.string, mode_limit_Hz), rig.damping, {position}, step_s},
         torsion_{torsional_modes(rig, mode_limit_Hz), damping_convention::viscous, {position}, step_s} {
@@ -39,6 +40,7 @@ public:
 
   /// Where the contact is from the end of the last step on: to be said before the line is drawn. The modes left out follow the
   /// force f with the deflection C f, and the surface moves with their sum sin (sin f)' / stiffness = C f' + C' f / 2.
+  template <class = void>
   void move_to(double position) noexcept {
     rest_before_ = rest_;
     transverse_.move_to({position});
@@ -47,12 +49,14 @@ public:
     rest_before_ = (rest_before_ + rest_) / 2;
   }
 
+  template <class = void>
   [[nodiscard]] load_line<double> line(const rod_state& rod) const noexcept {
     return {transverse_.free().velocity[0] + torsion_.free().velocity[0] - rest_before_ * force_, mobility_, rod.velocity_m_s,
             rod.normal_force_N, step_};
   }
 
   /// Ends the step under way with this force and begins the next.
+  template <class = void>
   modal_contact_state apply(double force_N) noexcept {
     const auto& t = transverse_.free();
     const modal_contact_state state{t.near + transverse_.near_gain(0) * force_N, t.far + transverse_.far_gain(0) * force_N,
@@ -68,6 +72,7 @@ public:
   [[nodiscard]] double mobility_m_Ns() const noexcept { return mobility_; }
 
 private:
+  template <class = void>
   void set_place(double position) noexcept {
     left_out_.near = 1 - position - transverse_.near_share(0);
     left_out_.far = position - transverse_.far_share(0);

@@ -20,6 +20,7 @@ namespace rosin {
 
 class modal_decimator {
 public:
+  template <class = void>
   modal_decimator(const modal_low_pass& filter, double step_s, int steps_per_sample)
       : stride_{steps_per_sample}, reach_{static_cast<Eigen::Index>(filter.half_width_s() / step_s) + 1} {
     for (auto* taps : {&points_, &lines_, &slopes_}) taps->setZero(2 * reach_ + 1);
@@ -38,14 +39,24 @@ public:
   [[nodiscard]] std::size_t reach() const noexcept { return static_cast<std::size_t>(reach_); }
 
   /// Each of these takes a signal at all steps, sample n at step reach() + n stride, and returns the samples.
-  [[nodiscard]] std::vector<double> points(const std::vector<double>& steps) const { return run(steps, points_); }
-  [[nodiscard]] std::vector<double> lines(const std::vector<double>& steps) const { return run(steps, lines_); }
-  [[nodiscard]] std::vector<double> slopes(const std::vector<double>& steps) const { return run(steps, slopes_); }
+  template <class = void>
+  [[nodiscard]] std::vector<double> points(const std::vector<double>& steps) const {
+    return run(steps, points_);
+  }
+  template <class = void>
+  [[nodiscard]] std::vector<double> lines(const std::vector<double>& steps) const {
+    return run(steps, lines_);
+  }
+  template <class = void>
+  [[nodiscard]] std::vector<double> slopes(const std::vector<double>& steps) const {
+    return run(steps, slopes_);
+  }
 
 private:
   using pack = Eigen::Array<double, 8, 1>;
 
   /// Eight partial sums; Eigen's own dot product makes GCC 12 warn of its AVX-512 header.
+  template <class = void>
   [[nodiscard]] static double dot(const Eigen::VectorXd& taps, const double* x) noexcept {
     pack sum = pack::Zero();
     Eigen::Index i = 0;
@@ -55,6 +66,7 @@ private:
     return total;
   }
 
+  template <class = void>
   [[nodiscard]] std::vector<double> run(const std::vector<double>& steps, const Eigen::VectorXd& taps) const {
     const auto last = static_cast<Eigen::Index>(steps.size()) - taps.size();
     std::vector<double> samples;

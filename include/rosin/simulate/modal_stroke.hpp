@@ -131,7 +131,8 @@ inline void add_scaled(std::vector<double>& to, double factor, const std::vector
 
 /// All signals through the low-pass, and into them what the modes left out contribute: their share of the force, their
 /// compliance times its rate (a contact that travels changes the compliance too slowly to count).
-inline void sample_steps(modal_take& take, const stroke_steps& s, const modal_decimator& decimate, std::size_t stride) {
+template <class = void>
+void sample_steps(modal_take& take, const stroke_steps& s, const modal_decimator& decimate, std::size_t stride) {
   take.contact_force_N = decimate.lines(s.force);
   const auto rate = decimate.slopes(s.force);
   take.force_near_N = decimate.points(s.near);
@@ -158,7 +159,8 @@ inline void sample_steps(modal_take& take, const stroke_steps& s, const modal_de
   return sum * step_s / 6;
 }
 
-[[nodiscard]] inline stroke_energy account_of(const modal_rig& rig, const stroke_steps& s, double limit_Hz, double step_s) {
+template <class = void>
+[[nodiscard]] stroke_energy account_of(const modal_rig& rig, const stroke_steps& s, double limit_Hz, double step_s) {
   stroke_energy out{.rod_J = integral_of_product(s.force, s.rod, step_s),
                     .friction_J = -integral_of_product(s.force, s.slip, step_s)};
   energy_account transverse{transverse_modes(rig.string, limit_Hz), step_s}, torsion{torsional_modes(rig, limit_Hz), step_s};

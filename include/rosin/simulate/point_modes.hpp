@@ -22,6 +22,7 @@ namespace rosin {
 class point_modes {
 public:
   point_modes() = default;
+  template <class = void>
   point_modes(std::span<const string_mode> modes, double position, double step_s) {
     for (std::size_t n = 0; n < modes.size(); ++n) {
       if (n % width == 0) lanes_.emplace_back();
@@ -46,6 +47,7 @@ public:
   [[nodiscard]] double free() const noexcept { return free_; }
 
   /// Ends the step with this force and begins the next.
+  template <class = void>
   void advance(double force) noexcept {
     pack sum = pack::Zero();
     for (auto& l : lanes_) {

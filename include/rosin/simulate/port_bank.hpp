@@ -20,6 +20,7 @@ namespace rosin {
 class port_bank {
 public:
   /// `clamping`: of the ends (modal_string.hpp).
+  template <class = void>
   port_bank(const modal_rig& rig, double axial_stiffness_N, double limit_Hz, double step_s,
             const std::array<double, 2>& clamping = {})
       : length_{rig.string.length_m}, axial_{axial_stiffness_N}, step_{step_s} {
@@ -38,27 +39,33 @@ public:
 
   Eigen::ArrayXd mass, omega, number;  ///< of every mode, transverse first
 
-  [[nodiscard]] Eigen::Index size() const noexcept { return mass.size(); }
+  template <class = void>
+  [[nodiscard]] Eigen::Index size() const noexcept {
+    return mass.size();
+  }
   [[nodiscard]] Eigen::Index transverse() const noexcept { return transverse_; }
   /// The shapes of all modes, or of the transverse ones alone: sin(k_n x) between pinned ends.
+  template <class Real = double>
   [[nodiscard]] Eigen::VectorXd at(double position, bool turns) const {
-    Eigen::VectorXd s = Eigen::VectorXd::Zero(size());
+    Eigen::VectorX<Real> s = Eigen::VectorX<Real>::Zero(size());
     for (Eigen::Index i = 0; i < (turns ? size() : transverse_); ++i) s[i] = modes_[static_cast<std::size_t>(i)].shape(position);
     return s;
   }
   /// Inertia that an end lends to the transverse modes when it moves: the integral of mu (1 - x/L) sin, or of mu (x/L) sin.
+  template <class Real = double>
   [[nodiscard]] Eigen::VectorXd at_end(int side) const {
-    Eigen::VectorXd s = Eigen::VectorXd::Zero(size());
+    Eigen::VectorX<Real> s = Eigen::VectorX<Real>::Zero(size());
     for (Eigen::Index i = 0; i < transverse_; ++i)
       s[i] = (side == 1 && static_cast<int>(number[i]) % 2 == 0 ? -2 : 2) * mass[i] / (number[i] * pi);
     return s;
   }
 
+  template <class Real = double>
   void set_ports(Eigen::MatrixXd shape) {
     shape_ = std::move(shape);
     mobility = shape_.transpose() * once_re_.matrix().asDiagonal() * shape_;
     end_gain = end_.transpose() * (felt(once_re_, once_im_)).matrix().asDiagonal() * shape_;
-    const Eigen::ArrayXd give = 1 / (mass * omega.square());
+    const Eigen::ArrayX<Real> give = 1 / (mass * omega.square());
     compliance =
         shape_.topRows(transverse_).transpose() * give.head(transverse_).matrix().asDiagonal() * shape_.topRows(transverse_);
     twist_compliance = shape_.bottomRows(size() - transverse_).transpose() *
@@ -72,6 +79,7 @@ public:
   Eigen::MatrixXd share;                         ///< static forces on the ends, of these modes only
 
   /// Velocities at the ports and forces on the ends at the end of the step under way if no force acts there.
+  template <class = void>
   void read_free(Eigen::VectorXd& velocity, Eigen::Vector2d& end) {
     now_re_ = re_, now_im_ = im_;
     if (axial_ > 0) now_re_ += once_re_ * own_, now_im_ += once_im_ * own_;
@@ -82,6 +90,7 @@ public:
     if (axial_ > 0) end += pull_;
   }
   /// Of the twist alone under these forces.
+  template <class = void>
   [[nodiscard]] double twist(Eigen::Index port, const Eigen::VectorXd& force) const {
     const auto turning = size() - transverse_;
     return (shape_.col(port).tail(turning).array() *
@@ -92,7 +101,11 @@ public:
   [[nodiscard]] double raised_N() const noexcept { return raised_; }
   void add_tension(double across_N) noexcept { across_ = across_N; }
   /// Of the string as it stands, mean: sum k_n^2 q_n^2 / 4.
-  [[nodiscard]] double strain() const { return (k_ * (q_re_ * re_ + q_im_ * im_)).square().sum() / 4; }
+  template <class = void>
+  [[nodiscard]] double strain() const {
+    return (k_ * (q_re_ * re_ + q_im_ * im_)).square().sum() / 4;
+  }
+  template <class = void>
   void advance(const Eigen::VectorXd& force) {
     drive_.matrix().noalias() = shape_ * force;
     if (axial_ > 0) {
@@ -104,18 +117,20 @@ public:
     re_.swap(now_re_);
   }
   /// After advance() with these forces: from now on they are gone, at once, and not over a step.
+  template <class = void>
   void let_go(const Eigen::VectorXd& force) {
     drive_.matrix().noalias() = shape_ * force;
     re_ -= (push_re_ - turn_re_ * once_re_ + turn_im_ * once_im_) * drive_;
     im_ -= (push_im_ - turn_im_ * once_re_ - turn_re_ * once_im_) * drive_;
   }
   /// At rest under these forces.
+  template <class Real = double>
   void rest_under(const Eigen::VectorXd& force) {
-    const Eigen::ArrayXd f = (shape_ * force).array(), stiffness = mass * omega.square();
+    const Eigen::ArrayX<Real> f = (shape_ * force).array(), stiffness = mass * omega.square();
     own_.setZero(), pull_.setZero();
-    Eigen::ArrayXd q = f / stiffness;
+    Eigen::ArrayX<Real> q = f / stiffness;
     for (int i = 0; i < 50 && axial_ > 0; ++i) {  // the tension rises by a few per mille: each turn gains as many digits
-      raise_tension(Eigen::ArrayXd::Zero(size()), q / q_im_);
+      raise_tension(Eigen::ArrayX<Real>::Zero(size()), q / q_im_);
       q = (f + own_) / stiffness;
     }
     // A step under a steady force changes nothing: the free state is the state less what the force adds at the step's end.
@@ -126,6 +141,7 @@ public:
 private:
   static constexpr double pi = 3.14159265358979323846;
 
+  template <class = void>
   void set_mode(Eigen::Index i, const string_mode& m, bool in_stress) {
     const auto p = m.pole();
     const auto r = respond_over_step(m, step_);
@@ -141,12 +157,14 @@ private:
     felt_[i] = q_re_[i] + end_damping_[i];
   }
   /// Displacement and its share of the stress, from velocity and its companion.
+  template <class = void>
   [[nodiscard]] Eigen::ArrayXd felt(const Eigen::ArrayXd& re, const Eigen::ArrayXd& im) const {
     return q_re_ * re + q_im_ * im + end_damping_ * re;
   }
 
+  template <class Real = double>
   void raise_tension(const Eigen::ArrayXd& re, const Eigen::ArrayXd& im) {
-    const Eigen::ArrayXd q = q_re_ * re + q_im_ * im + step_ * re;  // at the end of the step to come
+    const Eigen::ArrayX<Real> q = q_re_ * re + q_im_ * im + step_ * re;  // at the end of the step to come
     raised_ = axial_ / 4 * (k_ * q).square().sum();
     own_ = -(raised_ + across_) * length_ / 2 * k_.square() * q;
     pull_ = (raised_ + across_) * Eigen::Vector2d{(k_ * q).sum(), -(k_ * q * (pi * number).cos()).sum()};

@@ -11,6 +11,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/simulate/wave_design.hpp>
 #include <rosin/simulate/wave_way.hpp>
 
@@ -55,7 +56,8 @@ namespace detail {
 ///     a_j = R_i m_i + H_j (G_1 m_1 + G_2 m_2) / local.
 ///
 /// The largest gain of its two ways round where their phase passes 0, from 0.3 of the first partial on.
-[[nodiscard]] inline double largest_stuck_gain(const travelling_kernels<double>& k, double position, double period) {
+template <class = void>
+[[nodiscard]] double largest_stuck_gain(const travelling_kernels<double>& k, double position, double period) {
   using complex = std::complex<double>;
   std::size_t grid = 4096;
   while (grid < 16 * static_cast<std::size_t>(k.loop[0].last() + k.loop[1].last())) grid *= 2;
@@ -85,13 +87,15 @@ namespace detail {
   }
   return largest;
 }
+ROSIN_INSTANTIATE(double largest_stuck_gain(const travelling_kernels<double>&, double, double))
 
 }  // namespace detail
 
 /// Fails where the rig, the range, the settings or the ends make no sense, or the rate is too low for them.
-[[nodiscard]] inline outcome<travelling_design> design_travelling_wave(const modal_rig& rig, const contact_range& range,
-                                                                       const wave_settings& settings = {},
-                                                                       const std::array<modal_termination, 2>& ends = {}) {
+template <class = void>
+[[nodiscard]] outcome<travelling_design> design_travelling_wave(const modal_rig& rig, const contact_range& range,
+                                                                const wave_settings& settings = {},
+                                                                const std::array<modal_termination, 2>& ends = {}) {
   const double rate_Hz = 1 / settings.step_s(), length_s = 1 / (2 * rig.string.fundamental_Hz);
   if (!(range.least <= range.most)) return failure{"contact: the least of its positions lies beyond the most"};
   for (const double position : {range.least, range.most}) {
@@ -136,5 +140,7 @@ namespace detail {
     d.turn = detail::turn_modes(rig, d.limits, k.step_s), d.turn_stiffness_N_m = detail::turn_stiffness_N_m(rig);
   return d;
 }
+ROSIN_INSTANTIATE(outcome<travelling_design> design_travelling_wave(const modal_rig&, const contact_range&, const wave_settings&,
+                                                                    const std::array<modal_termination, 2>&))
 
 }  // namespace rosin

@@ -16,12 +16,14 @@ namespace rosin {
 /// Torsion of the surface at a contact that travels: partials, and the compliance of those left out (as in modal_contact.hpp).
 class travelling_turn {
 public:
+  template <class = void>
   travelling_turn(const travelling_design& d, double position)
       : modes_{d.turn, damping_convention::viscous, {position}, d.kernels.step_s},
         stiffness_N_m_{d.turn_stiffness_N_m}, step_s_{d.kernels.step_s}, present_{!d.turn.empty()} {
     rest_before_ = rest_ = rest_at(position);
   }
 
+  template <class = void>
   void move_to(double position) noexcept {
     if (!present_) return;
     modes_.move_to({position});
@@ -30,8 +32,15 @@ public:
     rest_ = rest;
   }
   /// Velocity at the end of the step under way if no force acts there, and for 1 N.
-  [[nodiscard]] double free() const noexcept { return modes_.free().velocity[0] - rest_before_ * force_; }
-  [[nodiscard]] double mobility() const noexcept { return modes_.mobility(0, 0) + rest_; }
+  template <class = void>
+  [[nodiscard]] double free() const noexcept {
+    return modes_.free().velocity[0] - rest_before_ * force_;
+  }
+  template <class = void>
+  [[nodiscard]] double mobility() const noexcept {
+    return modes_.mobility(0, 0) + rest_;
+  }
+  template <class = void>
   void advance(double force_N) noexcept {
     if (!present_) return;
     modes_.advance({force_N});
@@ -39,6 +48,7 @@ public:
   }
 
 private:
+  template <class = void>
   [[nodiscard]] double rest_at(double x) const noexcept {
     return present_ ? (x * (1 - x) / stiffness_N_m_ - modes_.compliance(0)) / step_s_ : 0;
   }

@@ -9,6 +9,7 @@
 
 #include <numeric>
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/propagate/transmission.hpp>
 #include <rosin/simulate/wave_echo.hpp>
 #include <rosin/simulate/wave_kernels.hpp>
@@ -69,7 +70,8 @@ inline void scale_to(std::vector<double>& taps, double sum) noexcept {
 }
 
 /// thin, fill and local: all that is not an echo.
-inline void set_contact(wave_design& d, const string_parameters& string) {
+template <class = void>
+void set_contact(wave_design& d, const string_parameters& string) {
   const double step_s = d.kernels.step_s, rate = 1 / step_s;
   const auto wave = [&](double f) {
     const double w = 2 * std::numbers::pi * f;
@@ -94,7 +96,8 @@ inline void set_contact(wave_design& d, const string_parameters& string) {
 }
 
 /// At stride 1: the near side's echo straight to the velocity; what would come before half of its lag is moved there.
-inline void set_direct(wave_design& d) {
+template <class = void>
+void set_direct(wave_design& d) {
   const auto& echo = d.loop.echo[d.kernels.near];
   const auto& fill = d.kernels.fill.front();
   fir whole = convolved({static_cast<int>(fill.first), fill.taps}, echo, 1), direct{std::max(1, echo.first / 2), {}};
@@ -105,7 +108,8 @@ inline void set_direct(wave_design& d) {
   d.kernels.direct = wave_taps<double>{direct};
 }
 
-[[nodiscard]] inline outcome<wave_loop> string_loop(const wave_design& d, const string_parameters& string) {
+template <class = void>
+[[nodiscard]] outcome<wave_loop> string_loop(const wave_design& d, const string_parameters& string) {
   const std::array<double, 2> delay{2 * d.end_delay_s[0], 2 * d.end_delay_s[1]};
   echo_plan plan{delay, string.stiffness_s2(), d.limits, d.wave_rate_Hz, 1, poles_of(transverse_modes(string, d.limits.pass_Hz))};
   if (d.kernels.stride > 1)
@@ -127,14 +131,16 @@ inline void set_direct(wave_design& d) {
 }
 
 /// Torsion: partials, and the compliance of the rest.
-inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
+template <class = void>
+void set_turn(wave_design& d, const modal_rig& rig, double position) {
   d.kernels.turn = {turn_modes(rig, d.limits, d.kernels.step_s), position, d.kernels.step_s};
   d.kernels.turn_rest = (position * (1 - position) / turn_stiffness_N_m(rig) - d.kernels.turn.compliance()) / d.kernels.step_s;
 }
 
 /// The design at one stride; its block is 0 if there is no time for it.
-[[nodiscard]] inline outcome<wave_design> design_at_stride(const modal_rig& rig, double position, const wave_settings& s,
-                                                           std::ptrdiff_t stride) {
+template <class = void>
+[[nodiscard]] outcome<wave_design> design_at_stride(const modal_rig& rig, double position, const wave_settings& s,
+                                                    std::ptrdiff_t stride) {
   wave_design d;
   d.kernels.step_s = s.step_s();
   d.kernels.stride = stride;
@@ -162,8 +168,9 @@ inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
 }  // namespace detail
 
 /// Fails where the rig, the position, the settings or the ends make no sense, or the rate is too low for them.
-[[nodiscard]] inline outcome<wave_design> design_wave(const modal_rig& rig, double position, const wave_settings& settings = {},
-                                                      const std::array<modal_termination, 2>& ends = {}) {
+template <class = void>
+[[nodiscard]] outcome<wave_design> design_wave(const modal_rig& rig, double position, const wave_settings& settings = {},
+                                               const std::array<modal_termination, 2>& ends = {}) {
   for (const auto& problem : {problem_with(rig, position), problem_with(settings)})
     if (!problem.empty()) return failure{problem};
   if (const auto problem = problem_with_contact(rig, position, settings); !problem.empty()) return failure{problem};
@@ -187,5 +194,7 @@ inline void set_turn(wave_design& d, const modal_rig& rig, double position) {
   best->kernels.block = std::max(detail::whole_strides(best->kernels.block, stride), stride);
   return best;
 }
+ROSIN_INSTANTIATE(outcome<wave_design> design_wave(const modal_rig&, double, const wave_settings&,
+                                                   const std::array<modal_termination, 2>&))
 
 }  // namespace rosin

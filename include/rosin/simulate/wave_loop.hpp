@@ -23,6 +23,7 @@
 
 #include <Eigen/Dense>
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/propagate/fir.hpp>
 
 namespace rosin {
@@ -85,13 +86,14 @@ inline void add_pole_rows(Eigen::MatrixXd& rows, Eigen::VectorXd& wanted, Eigen:
 }  // namespace detail
 
 /// Sets the loop's poles; each is given for Im p > 0. echo[1] has to be the longer kernel; `delay` is its own, in samples.
-inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> poles, double step_s, double delay,
-                      double stiffness = 1e-3) {
+template <class Real = double>
+void set_poles(wave_loop& loop, std::span<const std::complex<double>> poles, double step_s, double delay,
+               double stiffness = 1e-3) {
   auto& taps = loop.echo[1].taps;
   const double shaped_first = loop.echo[1].first;
   const auto rows_wanted = static_cast<Eigen::Index>(2 * poles.size() + 2);
-  Eigen::MatrixXd rows(rows_wanted, static_cast<Eigen::Index>(taps.size()));
-  Eigen::VectorXd wanted(rows_wanted);
+  Eigen::MatrixX<Real> rows(rows_wanted, static_cast<Eigen::Index>(taps.size()));
+  Eigen::VectorX<Real> wanted(rows_wanted);
   for (std::size_t n = 0; n < poles.size(); ++n) {
     detail::add_pole_rows(rows, wanted, static_cast<Eigen::Index>(n), loop, poles[n], step_s);
     const auto z = std::exp(poles[n] * step_s);
@@ -108,13 +110,14 @@ inline void set_poles(wave_loop& loop, std::span<const std::complex<double>> pol
   wanted[rows_wanted - 2] = 0;
   wanted[rows_wanted - 1] = -1e5 * moment;
   // the smallest change is a sum of rows: as many unknowns as conditions, not as taps
-  Eigen::MatrixXd between = rows * rows.transpose();
+  Eigen::MatrixX<Real> between = rows * rows.transpose();
   double weight = 0;  // of a partial's error, on average
   for (const auto& p : poles) weight += std::abs(p) / (-p.real()) / static_cast<double>(poles.size());
   between.diagonal().array() += stiffness * stiffness * weight * weight * static_cast<double>(poles.size());
-  const Eigen::VectorXd change = rows.transpose() * between.ldlt().solve(wanted);
+  const Eigen::VectorX<Real> change = rows.transpose() * between.ldlt().solve(wanted);
   for (std::size_t k = 0; k < taps.size(); ++k) taps[k] += change[static_cast<Eigen::Index>(k)];
 }
+ROSIN_INSTANTIATE(void set_poles(wave_loop&, std::span<const std::complex<double>>, double, double, double))
 
 /// The loop's own pole next to a wanted one, by Newton's method on R1 R2 = 1: what pitch and Q have become.
 [[nodiscard]] inline std::complex<double> pole_near(const wave_loop& loop, std::complex<double> start, double step_s) {
@@ -137,8 +140,9 @@ namespace detail {
 
 /// Transform of a kernel up to half the rate (conjugate). Precondition: it begins at or after 0 and ends before the transform
 /// does.
-[[nodiscard]] inline std::vector<std::complex<double>> spectrum_of(const lane_fft<double, 1>& transform, std::ptrdiff_t first,
-                                                                   std::span<const double> taps) {
+template <class = void>
+[[nodiscard]] std::vector<std::complex<double>> spectrum_of(const lane_fft<double, 1>& transform, std::ptrdiff_t first,
+                                                            std::span<const double> taps) {
   std::vector<double> data(2 * transform.size(), 0.0);
   for (std::size_t k = 0; k < taps.size(); ++k) data[2 * transform.position(static_cast<std::size_t>(first) + k)] = taps[k];
   transform.inverse(data.data());
@@ -157,7 +161,8 @@ namespace detail {
 
 /// Largest |R1 R2| where its phase passes 0, from 0.3 of the first partial's frequency on: elsewhere, and at 0 Hz, where the gain
 /// is 1, nothing can grow. `period` in samples; at 16 points and more for each lag.
-[[nodiscard]] inline double largest_gain(const wave_loop& loop, double period) {
+template <class = void>
+[[nodiscard]] double largest_gain(const wave_loop& loop, double period) {
   std::size_t grid = 4096;
   while (grid < 32 * static_cast<std::size_t>(loop.echo[0].last() + loop.echo[1].last())) grid *= 2;
   const lane_fft<double, 1> transform(grid);
@@ -168,5 +173,6 @@ namespace detail {
     largest = std::max(largest, detail::gain_at_crossing(one[i - 1] * other[i - 1], one[i] * other[i]));
   return largest;
 }
+ROSIN_INSTANTIATE(double largest_gain(const wave_loop&, double))
 
 }  // namespace rosin

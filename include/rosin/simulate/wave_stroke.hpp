@@ -97,7 +97,8 @@ bool run_waves(String& string, Law& law, const Motion& motion, wave_record& out,
 }
 
 /// The signals at the contact through the low-pass.
-inline void sample_waves(modal_take& take, const stroke_steps& s, const modal_decimator& decimate) {
+template <class = void>
+void sample_waves(modal_take& take, const stroke_steps& s, const modal_decimator& decimate) {
   take.contact_force_N = decimate.lines(s.force);
   take.centre_velocity_m_s = decimate.points(s.centre);
   take.torsion_velocity_m_s = decimate.points(s.torsion);
@@ -107,7 +108,8 @@ inline void sample_waves(modal_take& take, const stroke_steps& s, const modal_de
 }
 
 /// The books, as of a stroke that was simulated by modes (modal_stroke.hpp); s.position says where the contact was.
-[[nodiscard]] inline stroke_energy account_of_waves(const modal_rig& rig, stroke_steps& s, double step_s) {
+template <class = void>
+[[nodiscard]] stroke_energy account_of_waves(const modal_rig& rig, stroke_steps& s, double step_s) {
   const double limit_Hz = std::min(250e3, 0.49 / step_s);
   s.rest = {modal_contact{rig, s.position.back(), limit_Hz, step_s}.left_out()};
   return account_of(rig, s, limit_Hz, step_s);

@@ -14,6 +14,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/math/median.hpp>
 
 #include <Eigen/Dense>
@@ -47,6 +48,7 @@ namespace detail {
 struct period_medians {
   std::vector<double> at_s, relative;
 
+  template <class = void>
   period_medians(std::span<const double> velocity_m_s, double rate_Hz, double period_s, double rod_speed_m_s, double after_s) {
     const auto length = static_cast<std::size_t>(std::max(1.0, std::round(period_s * rate_Hz)));
     for (auto first = static_cast<std::size_t>(after_s * rate_Hz); first + length <= velocity_m_s.size(); first += length) {
@@ -65,13 +67,14 @@ struct approach_line {
   double cost = 0;
   Eigen::VectorXd left;
 
+  template <class Real = double>
   approach_line(const Eigen::VectorXd& target, const Eigen::VectorXd& column, double scale) {
     value[0] = target.maxCoeff();
     for (int pass = 0; pass < 12; ++pass) {
       left = target.array() - value[0] - value[1] * column.array();
-      const Eigen::ArrayXd weight = 1 / (1 + (left / scale).array().square());
-      Eigen::MatrixXd x(target.size(), 2);
-      x << Eigen::VectorXd::Ones(target.size()), column;
+      const Eigen::ArrayX<Real> weight = 1 / (1 + (left / scale).array().square());
+      Eigen::MatrixX<Real> x(target.size(), 2);
+      x << Eigen::VectorX<Real>::Ones(target.size()), column;
       Eigen::Matrix2d h = x.transpose() * (x.array().colwise() * weight).matrix();
       h(1, 1) += 1e-12 + (column.isZero() ? 1 : 0);
       value = h.ldlt().solve(x.transpose() * (target.array() * weight).matrix());
@@ -79,14 +82,18 @@ struct approach_line {
     left = target.array() - value[0] - value[1] * column.array();
     cost = (1 + (left / scale).array().square()).log().sum();
   }
-  [[nodiscard]] double scatter() const { return median_of(left.cwiseAbs()); }
+  template <class = void>
+  [[nodiscard]] double scatter() const {
+    return median_of(left.cwiseAbs());
+  }
 };
 
 }  // namespace detail
 
 /// Of the string's centre under the bow (NaN: unknown) of a stroke at this steady speed. `after_s`: until when nothing counts.
-[[nodiscard]] inline rod_approach find_rod_approach(std::span<const double> velocity_m_s, double rate_Hz, double period_s,
-                                                    double rod_speed_m_s, double after_s) {
+template <class Real = double>
+[[nodiscard]] rod_approach find_rod_approach(std::span<const double> velocity_m_s, double rate_Hz, double period_s,
+                                             double rod_speed_m_s, double after_s) {
   constexpr std::size_t least = 12;        // medians
   constexpr double least_lag = 0.02;       // at after_s
   constexpr double least_evidence = 12;    // natural logarithm
@@ -94,10 +101,10 @@ struct approach_line {
   constexpr double shortest_s = 0.004;
   const detail::period_medians medians(velocity_m_s, rate_Hz, period_s, rod_speed_m_s, after_s);
   if (medians.at_s.size() < least || !(rod_speed_m_s != 0)) return {};
-  const Eigen::VectorXd target = Eigen::VectorXd::Map(medians.relative.data(), medians.size());
-  const Eigen::ArrayXd since = Eigen::ArrayXd::Map(medians.at_s.data(), medians.size()) - after_s;
+  const Eigen::VectorX<Real> target = Eigen::VectorX<Real>::Map(medians.relative.data(), medians.size());
+  const Eigen::ArrayX<Real> since = Eigen::ArrayX<Real>::Map(medians.at_s.data(), medians.size()) - after_s;
   const double longest_s = 0.5 * since.maxCoeff();
-  const auto column = [&](double time_s) -> Eigen::VectorXd { return -(-since / time_s).exp(); };
+  const auto column = [&](double time_s) -> Eigen::VectorX<Real> { return -(-since / time_s).exp(); };
   double time_s = shortest_s, scale = 0.05;
   for (int pass = 0; pass < 4; ++pass) {
     double least_cost = 1e300, scatter = scale;
@@ -106,10 +113,12 @@ struct approach_line {
         least_cost = tried.cost, time_s = t, scatter = tried.scatter();
     scale = std::max(least_scatter, scatter);
   }
-  const detail::approach_line found(target, column(time_s), scale), steady(target, Eigen::VectorXd::Zero(medians.size()), scale);
+  const detail::approach_line found(target, column(time_s), scale),
+      steady(target, Eigen::VectorX<Real>::Zero(medians.size()), scale);
   const double lag = found.value[1] / found.value[0];
   if (!(found.value[0] > 0.3 && lag > least_lag && lag < 1.5 && steady.cost - found.cost > least_evidence)) return {};
   return {lag * std::exp(after_s / time_s), time_s};
 }
+ROSIN_INSTANTIATE(rod_approach find_rod_approach(std::span<const double>, double, double, double, double))
 
 }  // namespace rosin

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/friction/slip_phases.hpp>
 #include <rosin/torsion/contact_signal.hpp>
 #include <rosin/torsion/rod_approach.hpp>
@@ -60,6 +61,7 @@ struct transfer_slope {
 /// A take with its force transformed and its velocity smoothed and taken against the rod.
 class stick_record {
 public:
+  template <class = void>
   explicit stick_record(const stick_take& take)
       : take_{take}, begin_{first(take)}, force_{known(take.force_N), take.rate_Hz, usual_memory_s} {
     contact_signal<> velocity{known(take.velocity_m_s), take.rate_Hz};
@@ -176,9 +178,9 @@ private:
 }
 
 /// Picks every other of the marked samples of columns of samples: the window leaves no more than that of information.
-[[nodiscard]] inline stick_rows pick(const std::vector<char>& marked, const std::vector<double>& target,
-                                     const std::vector<std::vector<double>>& shared,
-                                     const std::vector<std::vector<double>>& own) {
+template <class = void>
+[[nodiscard]] stick_rows pick(const std::vector<char>& marked, const std::vector<double>& target,
+                              const std::vector<std::vector<double>>& shared, const std::vector<std::vector<double>>& own) {
   stick_rows rows;
   for (std::size_t i = 0; i < marked.size(); ++i)
     if (marked[i] && i % 2 == 0) rows.sample.push_back(i);
@@ -194,5 +196,7 @@ private:
   for (std::size_t c = 0; c < own.size(); ++c) take(own[c], rows.own.col(static_cast<Eigen::Index>(c)));
   return rows;
 }
+ROSIN_INSTANTIATE(stick_rows pick(const std::vector<char>&, const std::vector<double>&, const std::vector<std::vector<double>>&,
+                                  const std::vector<std::vector<double>>&))
 
 }  // namespace rosin

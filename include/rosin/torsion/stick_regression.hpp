@@ -11,6 +11,8 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -52,10 +54,12 @@ inline constexpr double student_freedom = 4;
 }
 
 /// What squares are to be weighted by, as Student's likelihood asks; and what to multiply rows by for that.
-[[nodiscard]] inline Eigen::VectorXd student_weights(const Eigen::VectorXd& residual, double scale) {
+template <class = void>
+[[nodiscard]] Eigen::VectorXd student_weights(const Eigen::VectorXd& residual, double scale) {
   return ((residual.array().square() / (scale * scale) + student_freedom).inverse() * (student_freedom + 1)).matrix();
 }
-[[nodiscard]] inline Eigen::VectorXd student_row_factors(const Eigen::VectorXd& residual, double scale) {
+template <class = void>
+[[nodiscard]] Eigen::VectorXd student_row_factors(const Eigen::VectorXd& residual, double scale) {
   return student_weights(residual, scale).cwiseSqrt();
 }
 
@@ -88,12 +92,13 @@ struct stacked {
   std::vector<Eigen::Index> first;  // row of each take, and the end
 };
 
-[[nodiscard]] inline stacked stack(const std::vector<stick_rows>& takes) {
+template <class Real = double>
+[[nodiscard]] stacked stack(const std::vector<stick_rows>& takes) {
   stacked s;
   Eigen::Index rows = 0, columns = takes.empty() ? 0 : takes.front().shared.cols();
   for (const auto& t : takes) s.first.push_back(rows), rows += t.target.size(), columns += t.own.cols();
   s.first.push_back(rows);
-  s.x = Eigen::MatrixXd::Zero(rows, columns);
+  s.x = Eigen::MatrixX<Real>::Zero(rows, columns);
   s.y.resize(rows);
   Eigen::Index own = takes.empty() ? 0 : takes.front().shared.cols();
   for (std::size_t t = 0; t < takes.size(); ++t) {
@@ -105,16 +110,18 @@ struct stacked {
   }
   return s;
 }
+ROSIN_INSTANTIATE(stacked stack(const std::vector<stick_rows>&))
 
 /// Inverse Hessian times the scatter of blocks' gradients times inverse Hessian.
-[[nodiscard]] inline Eigen::MatrixXd sandwich(const stacked& s, const Eigen::VectorXd& weighted_residual,
-                                              const Eigen::MatrixXd& inverse) {
+template <class Real = double>
+[[nodiscard]] Eigen::MatrixXd sandwich(const stacked& s, const Eigen::VectorXd& weighted_residual,
+                                       const Eigen::MatrixXd& inverse) {
   constexpr Eigen::Index blocks = 24;
-  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
+  Eigen::MatrixX<Real> scatter = Eigen::MatrixX<Real>::Zero(inverse.rows(), inverse.cols());
   for (std::size_t t = 0; t + 1 < s.first.size(); ++t)
     for (Eigen::Index b = 0, n = s.first[t + 1] - s.first[t]; b < blocks; ++b) {
       const Eigen::Index from = s.first[t] + n * b / blocks, size = s.first[t] + n * (b + 1) / blocks - from;
-      const Eigen::VectorXd gradient = s.x.middleRows(from, size).transpose() * weighted_residual.segment(from, size);
+      const Eigen::VectorX<Real> gradient = s.x.middleRows(from, size).transpose() * weighted_residual.segment(from, size);
       scatter += gradient * gradient.transpose();
     }
   return inverse * scatter * inverse;
@@ -123,18 +130,19 @@ struct stacked {
 }  // namespace detail
 
 /// Preconditions: all takes have as many shared columns; rows in all exceed the columns. `floor`: least scale.
-[[nodiscard]] inline stick_solution stick_regression(const std::vector<stick_rows>& takes, double floor = 0,
-                                                     const stick_prior& prior = {}) {
+template <class Real = double>
+[[nodiscard]] stick_solution stick_regression(const std::vector<stick_rows>& takes, double floor = 0,
+                                              const stick_prior& prior = {}) {
   const detail::stacked s = detail::stack(takes);
   const Eigen::Index shared = takes.front().shared.cols(), all = s.x.cols(), n = s.y.size();
-  Eigen::VectorXd weight = Eigen::VectorXd::Ones(n), value = Eigen::VectorXd::Zero(all), residual = s.y;
-  Eigen::MatrixXd hessian;
+  Eigen::VectorX<Real> weight = Eigen::VectorX<Real>::Ones(n), value = Eigen::VectorX<Real>::Zero(all), residual = s.y;
+  Eigen::MatrixX<Real> hessian;
   stick_solution out;
   out.scale = std::max(floor, std::sqrt(s.y.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, n))));
   for (int pass = 0; pass < 20; ++pass) {
-    const Eigen::MatrixXd wx = weight.asDiagonal() * s.x;
+    const Eigen::MatrixX<Real> wx = weight.asDiagonal() * s.x;
     hessian = s.x.transpose() * wx;
-    Eigen::VectorXd gradient = wx.transpose() * s.y;
+    Eigen::VectorX<Real> gradient = wx.transpose() * s.y;
     if (prior.precision.size() == shared) {
       hessian.diagonal().head(shared) += prior.precision * (out.scale * out.scale);
       gradient.head(shared) += prior.precision.cwiseProduct(prior.centre) * (out.scale * out.scale);
@@ -155,11 +163,11 @@ struct stacked {
     out.own.push_back(value.segment(at, takes[t].own.cols()));
     out.residual.push_back(residual.segment(s.first[t], s.first[t + 1] - s.first[t]));
   }
-  const Eigen::ArrayXd ratio = residual.array().square() / (out.scale * out.scale),
-                       nu = Eigen::ArrayXd::Constant(n, detail::student_freedom);
+  const Eigen::ArrayX<Real> ratio = residual.array().square() / (out.scale * out.scale),
+                            nu = Eigen::ArrayX<Real>::Constant(n, detail::student_freedom);
   // of the influence, against the weights
   const double slope = ((nu + 1) * (nu - ratio) / (nu + ratio).square()).sum() / weight.sum();
-  const Eigen::MatrixXd inverse = hessian.ldlt().solve(Eigen::MatrixXd::Identity(all, all)) / std::max(0.2, slope);
+  const Eigen::MatrixX<Real> inverse = hessian.ldlt().solve(Eigen::MatrixX<Real>::Identity(all, all)) / std::max(0.2, slope);
   out.covariance = detail::sandwich(s, weight.cwiseProduct(residual), inverse).topLeftCorner(shared, shared);
   out.rows = static_cast<double>(n);
   out.effective = out.rows / detail::rows_per_independent(takes, out.residual, out.scale);
@@ -167,5 +175,6 @@ struct stacked {
   out.log_likelihood *= out.effective / std::max(1.0, out.rows);
   return out;
 }
+ROSIN_INSTANTIATE(stick_solution stick_regression(const std::vector<stick_rows>&, double, const stick_prior&))
 
 }  // namespace rosin

@@ -14,6 +14,7 @@
 //
 #pragma once
 
+#include <rosin/core/instantiate.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/torsion/stick_data.hpp>
 #include <rosin/torsion/torsion_modes.hpp>
@@ -95,9 +96,10 @@ struct torsion_state {
 };
 
 /// Log-likelihood of a section of a record with Cauchy's density, slips and all, for a torsional shape whose size is free.
-[[nodiscard]] inline double cauchy_cost(const std::vector<double>& target, const std::vector<double>& shape,
-                                        const std::vector<double>& slope, std::size_t begin, std::size_t end, double speed,
-                                        double& size) {
+template <class = void>
+[[nodiscard]] double cauchy_cost(const std::vector<double>& target, const std::vector<double>& shape,
+                                 const std::vector<double>& slope, std::size_t begin, std::size_t end, double speed,
+                                 double& size) {
   Eigen::Vector3d value(0, size, 0);
   double cost = 0;
   for (const double scale : {1.0, 0.5, 0.25, 0.12, 0.12, 0.12}) {
@@ -134,7 +136,8 @@ struct torsion_state {
 
 /// The likeliest starting points, best first. Ratios that strings have hardly been seen to have must be likelier by `rarer`, as
 /// what merely yields looks like fast torsion.
-[[nodiscard]] inline std::vector<torsion_values> torsion_starts(const stick_record& whole, std::size_t wanted) {
+template <class = void>
+[[nodiscard]] std::vector<torsion_values> torsion_starts(const stick_record& whole, std::size_t wanted) {
   stick_record record(first_part(whole, 12000));
   const std::size_t begin = static_cast<std::size_t>(std::lround(record.take().start_s * record.take().rate_Hz)),
                     end = record.end();
@@ -164,7 +167,8 @@ struct torsion_state {
 }
 
 /// One Gauss-Newton step in the logarithms, everything linear solved for along with it. `move` false: evaluated only.
-inline void torsion_step(std::vector<stick_record>& records, torsion_state& state, bool move, double most = 0.6) {
+template <class = void>
+void torsion_step(std::vector<stick_record>& records, torsion_state& state, bool move, double most = 0.6) {
   std::vector<stick_rows> rows;
   const Eigen::Vector3d here = state.at.logs();
   for (auto& record : records) {
@@ -202,7 +206,8 @@ inline void torsion_step(std::vector<stick_record>& records, torsion_state& stat
       v.speed_ratio > 1.5 && v.speed_ratio < 40 && v.impedance_ratio > 0.2 && v.impedance_ratio < 60 && v.q > 1.5 && v.q < 1000;
 }
 
-[[nodiscard]] inline torsion_state settle(std::vector<stick_record>& records, torsion_state state, int steps) {
+template <class = void>
+[[nodiscard]] torsion_state settle(std::vector<stick_record>& records, torsion_state state, int steps) {
   for (int i = 0; i < steps && state.sane; ++i) torsion_step(records, state, true, i < 2 ? 0.6 : 0.4);
   return state;
 }
@@ -224,7 +229,8 @@ inline void torsion_step(std::vector<stick_record>& records, torsion_state& stat
   return records;
 }
 
-inline void judge_torsion(const torsion_state& best, const std::vector<stick_record>& records, torsion_fit_result& r) {
+template <class = void>
+void judge_torsion(const torsion_state& best, const std::vector<stick_record>& records, torsion_fit_result& r) {
   double usable = 0, speed = 0;
   for (const auto& record : records)
     usable += static_cast<double>(record.end() - record.begin()), speed += std::abs(record.take().rod_speed_m_s);
@@ -247,8 +253,9 @@ inline void judge_torsion(const torsion_state& best, const std::vector<stick_rec
 }  // namespace detail
 
 /// Fits torsion to all takes together. `start`: declared values, tried beside the grid. Fails where nothing sticks.
-[[nodiscard]] inline outcome<torsion_fit_result> fit_torsion(const std::vector<stick_take>& takes,
-                                                             std::optional<torsion_values> start = {}) {
+template <class = void>
+[[nodiscard]] outcome<torsion_fit_result> fit_torsion(const std::vector<stick_take>& takes,
+                                                      std::optional<torsion_values> start = {}) {
   auto records = detail::records_of(takes);
   if (records.empty()) return failure{"torsion: no bowed take with 500 known samples and a known speed of the rod"};
   auto starts = detail::torsion_starts(records.front(), 3);
@@ -284,5 +291,6 @@ inline void judge_torsion(const torsion_state& best, const std::vector<stick_rec
   detail::judge_torsion(best, records, result);
   return result;
 }
+ROSIN_INSTANTIATE(outcome<torsion_fit_result> fit_torsion(const std::vector<stick_take>&, std::optional<torsion_values>))
 
 }  // namespace rosin

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include <rosin/core/instantiate.hpp>
+
+#include <doctest/doctest.h>
+
+namespace {
+
+template <class Real = double>
+int half(int x) {
+  return x / 2;
+}
+ROSIN_INSTANTIATE(int half(int))
+
+}  // namespace
+
+// A definition as the library's sources have it, since nothing else holds this function.
+#ifdef ROSIN_COMPILED
+#undef ROSIN_INSTANTIATE_AS
+#define ROSIN_INSTANTIATE_AS
+namespace {
+ROSIN_INSTANTIATE(int half(int))
+}
+#endif
+
+TEST_CASE("a function that is declared to be compiled once is called like any other") { CHECK(half(8) == 4); }
