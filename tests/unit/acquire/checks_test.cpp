@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace acquire_checks {
+
 namespace {
 
 rosin::take_check check(const test::pluck& p) {
@@ -201,3 +203,5 @@ TEST_CASE("a quiet take gives the noise") {
   CHECK(kinds(c) == "");
   CHECK(*c.channels[1].noise_rms == test::approx(4e-4).epsilon(0.03));
 }
+
+}  // namespace acquire_checks

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace acquire_finding {
+
 TEST_CASE("only an error counts as an error") {
   std::vector<rosin::finding> findings(2);
   findings[1].level = rosin::severity::warning;
@@ -11,3 +13,5 @@ TEST_CASE("only an error counts as an error") {
   CHECK(rosin::has_error(findings));
   CHECK(name_of(rosin::severity::warning) == "warning");
 }
+
+}  // namespace acquire_finding

@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace acquire_hum {
+
 namespace {
 
 /// A ringing string with hum on it; the stretch begins a period after the release.
@@ -52,3 +54,5 @@ TEST_CASE("partials of a string that sounds at the mains' frequency are not hum"
   p.release_s = 0;
   CHECK_FALSE(rosin::find_hum(test::pluck_forces(p)[0], p.rate_Hz, 50));
 }
+
+}  // namespace acquire_hum

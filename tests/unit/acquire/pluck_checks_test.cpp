@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace acquire_pluck_checks {
+
 namespace {
 
 struct result {
@@ -60,3 +62,5 @@ TEST_CASE("the scale is compared with the wire's strength, tolerances allowed fo
     CHECK(found.check.found("wrong-scale") == wrong);
   }
 }
+
+}  // namespace acquire_pluck_checks

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace acquire_recording {
+
 namespace {
 
 rosin::recording stereo() {
@@ -66,3 +68,5 @@ TEST_CASE("the step of a converter") {
   CHECK(r.step() == 0.0);
   CHECK(r.duration_s() == 0.002);
 }
+
+}  // namespace acquire_recording

@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace acquire_release {
+
 TEST_CASE("the release arrives as a step of the breaking force, at each end in its time") {
   for (const double position : {0.12, 0.3, 0.45}) {
     CAPTURE(position);
@@ -43,3 +45,5 @@ TEST_CASE("the onset is found within half a period") {
   CHECK_FALSE(rosin::first_onset({}, 48000, 330));
   CHECK_FALSE(rosin::first_onset(std::vector<double>(4000, 0.3), 48000, 330));
 }
+
+}  // namespace acquire_release

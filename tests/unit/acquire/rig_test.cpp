@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace acquire_rig {
+
 TEST_CASE("a take's own position goes before that of [contact], and an unknown one before both") {
   rosin::rig r;
   rosin::take t;
@@ -41,3 +43,5 @@ TEST_CASE("names stand for the enumerators in their order") {
   CHECK(name_of(rosin::take_kind::bow) == "bow");
   CHECK(name_of(rosin::friction_model::elasto_plastic) == "elasto-plastic");
 }
+
+}  // namespace acquire_rig

@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace acquire_rig_values {
+
 namespace {
 
 rosin::rig paper_rig() {
@@ -90,3 +92,5 @@ TEST_CASE("gains and forces without a tolerance get the default, named by channe
   CHECK(rosin::gain_tolerance_of(r.channels[0]) == 0.05);
   CHECK(rosin::force_tolerance_of(r.takes[0]) == 0.03);
 }
+
+}  // namespace acquire_rig_values

@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace acquire_ringing {
+
 namespace {
 
 std::vector<double> ringing(const test::pluck& p) {
@@ -71,3 +73,5 @@ TEST_CASE("nothing is said of what is too short or silent") {
   CHECK_FALSE(rosin::find_ringing(std::vector<double>(20000, 0.0), p.rate_Hz, p.fundamental_Hz, 0));
   CHECK_FALSE(rosin::find_quality({x.data(), 100}, p.rate_Hz, p.fundamental_Hz));
 }
+
+}  // namespace acquire_ringing

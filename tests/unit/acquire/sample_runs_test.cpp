@@ -8,6 +8,8 @@
 
 #include "support/approx.hpp"
 
+namespace acquire_sample_runs {
+
 namespace {
 
 constexpr double step = 1.0 / 32768;
@@ -128,3 +130,5 @@ TEST_CASE("four equal samples in a quiet stretch are chance, in the middle of a 
   CHECK(rosin::dropouts(still, 1).empty());
   CHECK(rosin::dropouts(moving, 1).size() == 1);
 }
+
+}  // namespace acquire_sample_runs

@@ -8,6 +8,8 @@
 
 #include "support/approx.hpp"
 
+namespace acquire_signal_checks {
+
 namespace {
 
 /// One second of a channel of 2 N full scale, 16 bit: a sine and noise.
@@ -109,3 +111,5 @@ TEST_CASE("units by quantity, and of full scale without calibration") {
   c.quantity = rosin::quantity::bow_speed;
   CHECK(rosin::unit_of(c) == "m/s");
 }
+
+}  // namespace acquire_signal_checks

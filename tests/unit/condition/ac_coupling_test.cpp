@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace condition_ac_coupling {
+
 TEST_CASE_TEMPLATE("a step that drooped away comes back, but for its mean", T, float, double) {
   constexpr double rate_Hz = 128e3, corner_Hz = 3, step_at = 0.05;
   std::vector<T> seen, was;
@@ -43,3 +45,5 @@ TEST_CASE("a DC-coupled signal is left alone") {
   rosin::restore_ac_coupled<double>(x, 0, 1000);
   CHECK(x == std::vector<double>{1, 2, 3});
 }
+
+}  // namespace condition_ac_coupling

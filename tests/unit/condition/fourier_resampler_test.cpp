@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+namespace condition_fourier_resampler {
+
 namespace {
 
 struct partial {
@@ -98,3 +100,5 @@ TEST_CASE("what lies above is left out, not folded") {
 }
 
 TEST_CASE("an empty record stays empty") { CHECK(rosin::fourier_resample<double>(std::span<const double>{}, 8).empty()); }
+
+}  // namespace condition_fourier_resampler

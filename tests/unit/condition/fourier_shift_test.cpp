@@ -11,6 +11,8 @@
 
 #include "support/approx.hpp"
 
+namespace condition_fourier_shift {
+
 namespace {
 
 /// Three partials, the highest one at or just below half the sampling rate, later by `delay`.
@@ -67,3 +69,5 @@ TEST_CASE("in and out may be the same record") {
   rosin::fourier_shift<double>(99).process(x, x, 1.5);
   for (std::size_t j = 0; j < x.size(); ++j) CHECK(x[j] == test::approx(expected[j]).epsilon(1e-13));
 }
+
+}  // namespace condition_fourier_shift

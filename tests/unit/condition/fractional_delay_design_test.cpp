@@ -16,6 +16,8 @@
 
 #include "support/approx.hpp"
 
+namespace condition_fractional_delay_design {
+
 TEST_CASE("I0 is that of Boost") {
   for (double x = 0; x < 40; x += 0.7) CHECK(rosin::bessel_i0(x) == test::approx(boost::math::cyl_bessel_i(0, x)).epsilon(1e-14));
 }
@@ -71,3 +73,5 @@ TEST_CASE("what cannot be designed is named") {
   CHECK(rosin::design_kaiser_delay(1.5, {1.0, -80}).error().find("bandwidth 1.0") != std::string::npos);
   CHECK(rosin::design_kaiser_delay(1.5, {0.8, -300}).error().find("-300") != std::string::npos);
 }
+
+}  // namespace condition_fractional_delay_design

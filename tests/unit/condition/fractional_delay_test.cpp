@@ -16,6 +16,8 @@
 
 #include "support/approx.hpp"
 
+namespace condition_fractional_delay {
+
 using rosin::fractional_delay, rosin::lagrange, rosin::kaiser;
 
 static_assert(rosin::Stage<fractional_delay<float, lagrange<4>, 64>> && rosin::Stage<fractional_delay<double, kaiser<16>, 64>>);
@@ -121,3 +123,5 @@ TEST_CASE("not a number in, not a number out, until it has left the taps") {
   CHECK(std::isnan(line(1)));
   CHECK(line(1) == 1);
 }
+
+}  // namespace condition_fractional_delay

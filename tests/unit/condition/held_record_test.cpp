@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace condition_held_record {
+
 namespace {
 
 std::vector<double> step_and_ramp() {
@@ -52,3 +54,5 @@ TEST_CASE("nothing jumps where the period closes: the spectrum of a ramp falls f
   CHECK(std::abs(spectrum[high]) < 5.0);
   CHECK(std::abs(spectrum[1]) > 1e5);
 }
+
+}  // namespace condition_held_record

@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+namespace condition_low_pass {
+
 namespace {
 
 constexpr double rate_Hz = 128e3;
@@ -64,3 +66,5 @@ TEST_CASE("a step at the other end of the record is not felt, as it would be if 
 }
 
 TEST_CASE("an empty record stays empty") { CHECK(rosin::low_pass<double>(std::span<const double>{}, rate_Hz, limits).empty()); }
+
+}  // namespace condition_low_pass

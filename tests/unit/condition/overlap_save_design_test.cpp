@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace condition_overlap_save_design {
+
 namespace {
 
 struct kernel {
@@ -47,3 +49,5 @@ TEST_CASE("blocks are powers of two of at least twice the taps, and shorter wher
     CHECK(rosin::quickest_block(taps, 1024) <= block);
   }
 }
+
+}  // namespace condition_overlap_save_design

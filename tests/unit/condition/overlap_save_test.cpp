@@ -17,6 +17,8 @@
 
 #include "support/approx.hpp"
 
+namespace condition_overlap_save {
+
 namespace {
 
 struct kernel {
@@ -144,3 +146,5 @@ TEST_CASE("long kernels get long blocks") {
   const auto out = run<double>(convolver, click);
   for (std::size_t j = 0; j < 5000; j += 7) CHECK(out[0][12345 + j] == test::approx(kernels[0].taps[j]).scale(1).epsilon(1e-13));
 }
+
+}  // namespace condition_overlap_save

@@ -8,6 +8,8 @@
 
 #include "support/approx.hpp"
 
+namespace condition_record_at {
+
 TEST_CASE("a record is read at instants that run unevenly") {
   for (const double share : {0.01, 0.2, 0.42}) {
     const auto tone = [&](double at) { return std::sin(2 * std::numbers::pi * share * at + 0.3); };
@@ -27,3 +29,5 @@ TEST_CASE("what lies outside a record is like its nearest sample, however far") 
     CHECK(v == test::approx(2).epsilon(1e-5));
   CHECK(rosin::record_at({}, [](std::size_t i) { return static_cast<double>(i); }).empty());
 }
+
+}  // namespace condition_record_at

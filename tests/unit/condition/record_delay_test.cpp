@@ -10,6 +10,8 @@
 #include <numbers>
 #include <vector>
 
+namespace condition_record_delay {
+
 namespace {
 
 /// Twenty partials of unit amplitude up to 0.8 of half the sampling rate, that one included, later by `delay`.
@@ -60,3 +62,5 @@ TEST_CASE("whole delays are exact to rounding") {
 TEST_CASE("no record comes of a delay that is no number") {
   CHECK_FALSE(rosin::record_delay<double>::make(std::numeric_limits<double>::quiet_NaN()).has_value());
 }
+
+}  // namespace condition_record_delay

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-namespace {
+namespace core_instantiate {
 
 template <class Real = double>
 int half(int x) {
@@ -11,15 +11,15 @@ int half(int x) {
 }
 ROSIN_INSTANTIATE(int half(int))
 
-}  // namespace
-
 // A definition as the library's sources have it, since nothing else holds this function.
 #ifdef ROSIN_COMPILED
 #undef ROSIN_INSTANTIATE_AS
 #define ROSIN_INSTANTIATE_AS
-namespace {
 ROSIN_INSTANTIATE(int half(int))
-}
+#undef ROSIN_INSTANTIATE_AS
+#define ROSIN_INSTANTIATE_AS extern
 #endif
 
 TEST_CASE("a function that is declared to be compiled once is called like any other") { CHECK(half(8) == 4); }
+
+}  // namespace core_instantiate

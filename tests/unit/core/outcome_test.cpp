@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+namespace core_outcome {
+
 namespace {
 
 rosin::outcome<int> half(int x) {
@@ -45,3 +47,5 @@ TEST_CASE("a string and a failure are told apart") {
   CHECK(*word == "value");
   CHECK(none.error() == "reason");
 }
+
+}  // namespace core_outcome

@@ -6,6 +6,8 @@
 #include <memory>
 #include <type_traits>
 
+namespace core_pipeline {
+
 namespace {
 
 template <class T>
@@ -89,3 +91,5 @@ TEST_CASE("composition costs no memory and is available to the compiler") {
   constexpr float at_compile_time = rosin::pipeline(scale<float>{2}, scale<float>{3}, scale<float>{5})(1.0F);
   CHECK(at_compile_time == 30.0F);
 }
+
+}  // namespace core_pipeline

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace core_stage {
+
 namespace {
 
 template <class In, class Out = In>
@@ -65,3 +67,5 @@ TEST_CASE("a stage feeds another only where the types agree exactly") {
   CHECK_FALSE(rosin::Feeds<convert<float, double>, convert<float>>);
   CHECK_FALSE(rosin::Feeds<convert<float>, may_throw>);
 }
+
+}  // namespace core_stage

@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_contact_heat {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -86,3 +88,5 @@ TEST_CASE("reset forgets all heat") {
   CHECK(heat.temperature_rise_K() == 0.0);
   CHECK(heat(0.1, 0.3, 0.3, 1e-6) == fresh(0.1, 0.3, 0.3, 1e-6));
 }
+
+}  // namespace friction_contact_heat

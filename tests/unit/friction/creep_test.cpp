@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_creep {
+
 namespace {
 
 rosin::load_line<double> line_for(double sticking) { return {0.0, 2.0, 2.0 * sticking, 0.3, 1e-6}; }
@@ -46,3 +48,5 @@ TEST_CASE("without load there is no motion") {
   CHECK(contact.force_N == 0.0);
   CHECK(contact.converged);
 }
+
+}  // namespace friction_creep

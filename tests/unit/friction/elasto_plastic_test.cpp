@@ -8,6 +8,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_elasto_plastic {
+
 namespace {
 
 using law_type = rosin::elasto_plastic<rosin::stribeck_curve<>>;
@@ -89,3 +91,5 @@ TEST_CASE("with the rod off nothing acts and the bristles are straight") {
   CHECK(law({0.0, 1.0, 0.1, 0.0, 1e-6}).force_N == 0.0);
   CHECK(law.deflection_m() == 0.0);
 }
+
+}  // namespace friction_elasto_plastic

@@ -10,6 +10,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_enhanced_thermal {
+
 namespace {
 
 const rosin::power_law_curve<> steady;  // 0.2 (v + 0.011)^(-0.4)
@@ -57,3 +59,5 @@ TEST_CASE("against the slip in both directions, no force without the rod, forget
   law.reset();
   CHECK(law.temperature_rise_K() == 0.0);
 }
+
+}  // namespace friction_enhanced_thermal

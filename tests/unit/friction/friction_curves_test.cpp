@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_friction_curves {
+
 namespace {
 
 template <class Curve>
@@ -56,3 +58,5 @@ TEST_CASE("single precision gives the same curve") {
     CHECK(rosin::two_exponential_curve<float>{}(v).value ==
           test::approx(rosin::two_exponential_curve<>{}(static_cast<double>(v)).value).epsilon(1e-5));
 }
+
+}  // namespace friction_friction_curves

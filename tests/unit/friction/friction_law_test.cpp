@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_friction_law {
+
 namespace {
 
 /// The least that is a law: never any friction.
@@ -30,3 +32,5 @@ TEST_CASE_TEMPLATE("the sticking force brings the surface to the rod's speed", T
   CHECK(line.slip(line.sticking_force()) == test::approx(0.0).scale(1));
   CHECK(line.slip(T(0)) == test::approx(-1.0));
 }
+
+}  // namespace friction_friction_law

@@ -12,6 +12,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_slip_loops {
+
 namespace {
 
 constexpr double rate_Hz = 128e3, rod_m_s = 0.2;
@@ -138,3 +140,5 @@ TEST_CASE("slip loops: simulated friction of a velocity curve splits hardly, the
   CHECK(thermal.sense == rosin::loop_sense::counter_clockwise);
   for (const auto& s : by_heat) CHECK(s.dissipated_J > 0);
 }
+
+}  // namespace friction_slip_loops

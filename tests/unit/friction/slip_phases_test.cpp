@@ -10,6 +10,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_slip_phases {
+
 namespace {
 
 const rosin::modal_rig rig{.string = {.length_m = 0.314,
@@ -89,3 +91,5 @@ TEST_CASE("slip phases: a simulated stroke, with torsion and without knowing of 
   CHECK(centre.fluctuation_m_s > 3 * whole.fluctuation_m_s);
   CHECK(centre.sticking() == test::approx(whole.sticking()).epsilon(0.35));
 }
+
+}  // namespace friction_slip_phases

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_slip_samples {
+
 TEST_CASE("slip samples: speed and coefficient of friction inside the slips, in either direction of the stroke") {
   std::vector<double> force(400, 0.1), relative(400, 0.0);
   for (std::size_t i = 100; i < 140; ++i) force[i] = 0.15, relative[i] = -0.6;
@@ -68,3 +70,5 @@ TEST_CASE("smooth functions: a partition of one that follows curves of friction"
   CHECK(outside(0, 0) == test::approx(1));
   CHECK(outside(1, 10) == test::approx(1));
 }
+
+}  // namespace friction_slip_samples

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <initializer_list>
 
+namespace friction_slip_watch {
+
 using rosin::contact_state;
 
 TEST_CASE("a Helmholtz motion with ripple: one slip a period, for both ways of the rod") {
@@ -36,3 +38,5 @@ TEST_CASE("what lies between the thresholds keeps the state; nothing is said wit
   rosin::slip_watch<float> still{0.0F};
   CHECK(still(1.0F) == contact_state::unknown);
 }
+
+}  // namespace friction_slip_watch

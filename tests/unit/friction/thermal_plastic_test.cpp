@@ -10,6 +10,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_thermal_plastic {
+
 namespace {
 
 rosin::thermal_plastic<double> usual_law(double normal = 0.3) {
@@ -73,3 +75,5 @@ TEST_CASE("never feeds energy in; with the rod off there is no force") {
   CHECK(law({1.0, 3.0, 0.2, 0.0, 1e-6}).force_N == 0.0);
   CHECK(law({1.0, 3.0, 0.2, -1.0, 1e-6}).slipping);
 }
+
+}  // namespace friction_thermal_plastic

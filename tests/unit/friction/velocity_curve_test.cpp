@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_velocity_curve {
+
 namespace {
 
 /// All roots of u - D + w mu(u) on (0, D], by scanning for changes of sign.
@@ -118,3 +120,5 @@ TEST_CASE("off the string there is no force, and the first touch finds its branc
   law.reset();
   CHECK(!law(line_for(1.0)).slipping);
 }
+
+}  // namespace friction_velocity_curve

@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_yield_curve_design {
+
 TEST_CASE("the table turns the steady temperature round") {
   // Woodhouse and Galluzzo's Eq. (5): N mu v = v a delta rho c Theta + Theta A K sqrt(3 v / (8 a D)), no string
   const rosin::two_exponential_curve<> steady;
@@ -44,3 +46,5 @@ TEST_CASE("what cannot be turned round is refused with the speed at which it fai
   CHECK(table.error().find("falls with speed at 0.0") != std::string::npos);
   CHECK(!rosin::design_yield_curve(rosin::two_exponential_curve<>{}, rosin::contact_heat_parameters<>{}, 0.0));
 }
+
+}  // namespace friction_yield_curve_design

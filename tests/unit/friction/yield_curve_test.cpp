@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace friction_yield_curve {
+
 TEST_CASE_TEMPLATE("straight between entries, held beyond the ends", T, float, double) {
   rosin::yield_curve<T> curve;
   curve.spacing_K = T(0.5);
@@ -15,3 +17,5 @@ TEST_CASE_TEMPLATE("straight between entries, held beyond the ends", T, float, d
   CHECK(curve(T(-7)) == test::approx(2.0));
   CHECK(curve(T(1e6)) == test::approx(2 - 0.001 * (curve.entries - 1)).epsilon(1e-5));
 }
+
+}  // namespace friction_yield_curve

@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace propagate_airy_kernel {
+
 namespace {
 
 constexpr double rate_Hz = 128e3;
@@ -69,3 +71,5 @@ TEST_CASE("nothing arrives before the pulse has left") {
   CHECK(rosin::airy_transmission(0, 1e-4, paper.stiffness_s2()) == 0);
   CHECK(rosin::airy_transmission(-1e-5, 1e-4, paper.stiffness_s2()) == 0);
 }
+
+}  // namespace propagate_airy_kernel

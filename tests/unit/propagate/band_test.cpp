@@ -8,6 +8,8 @@
 
 #include "support/approx.hpp"
 
+namespace propagate_band {
+
 namespace {
 
 constexpr rosin::band lp{20e3, 60e3};
@@ -42,3 +44,5 @@ TEST_CASE("a band without a transition is a step") {
   CHECK(step(1e3) == 1);
   CHECK(step(1000.001) == 0);
 }
+
+}  // namespace propagate_band

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace propagate_bow_point {
+
 TEST_CASE("a contact's travel times add up to half a period, in the ratio of the lengths") {
   const rosin::string_parameters s{0.33, 70, 640, 5e-5, {900, 0, 0}};
   const rosin::bow_point at = rosin::contact_at(s, 0.27);
@@ -14,3 +16,5 @@ TEST_CASE("a contact's travel times add up to half a period, in the ratio of the
   CHECK(at.stiffness_s2 == s.stiffness_s2());
   CHECK(at.loss.quality == 900);
 }
+
+}  // namespace propagate_bow_point

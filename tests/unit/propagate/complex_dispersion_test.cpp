@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace propagate_complex_dispersion {
+
 TEST_CASE("the phase rate at complex frequencies solves q^2 + epsilon q^4 = w^2, and is the real one on the axis") {
   using complex = std::complex<double>;
   constexpr double epsilon = 1e-12;
@@ -16,3 +18,5 @@ TEST_CASE("the phase rate at complex frequencies solves q^2 + epsilon q^4 = w^2,
   for (const double w : {10.0, 1e4, 1e6})
     CHECK(std::abs(rosin::phase_rate(complex(w, 0), epsilon) - rosin::phase_rate(w, epsilon)) < 1e-14 * w);
 }
+
+}  // namespace propagate_complex_dispersion

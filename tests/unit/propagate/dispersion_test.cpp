@@ -11,6 +11,8 @@
 
 #include "support/approx.hpp"
 
+namespace propagate_dispersion {
+
 namespace {
 
 // The paper's string: m w^2 = T k^2 + B k^4.
@@ -58,3 +60,5 @@ TEST_CASE("an ideal string disperses nothing; float is as good as float can be; 
   const std::complex<double> w(1e5, 300), q = rosin::phase_rate(w, epsilon);
   CHECK(std::abs(q * q * (1.0 + epsilon * q * q) - w * w) < 1e-12 * std::abs(w * w));
 }
+
+}  // namespace propagate_dispersion

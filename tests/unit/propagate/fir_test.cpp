@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace propagate_fir {
+
 namespace {
 
 constexpr double rate_Hz = 48e3;
@@ -62,3 +64,5 @@ TEST_CASE("a set of runs: each is as short as its own size allows") {
   REQUIRE(two[0].taps.size() == alone.taps.size());
   CHECK(two[0].taps[9] == test::approx(1e-3 * alone.taps[9]));
 }
+
+}  // namespace propagate_fir

@@ -8,6 +8,8 @@
 
 #include "support/approx.hpp"
 
+namespace propagate_string_parameters {
+
 TEST_CASE("what follows from a string's length, tension and pitch") {
   const rosin::string_parameters s{0.314, 72.5, 659.69, 4.7e-5, {}};
   CHECK(s.wave_speed_m_s() == test::approx(414.286).epsilon(1e-5));
@@ -108,3 +110,5 @@ TEST_CASE("without causality no loss disperses") {
   CHECK(uneven.inverse_q(200 * std::exp(std::numbers::pi / 4)) == test::approx(1.1 / 300));
   CHECK(rosin::loss_law{.quality = 300, .causality = 1, .reference_Hz = 200}.quickening(0) == 0);
 }
+
+}  // namespace propagate_string_parameters

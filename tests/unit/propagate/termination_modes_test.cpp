@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace propagate_termination_modes {
+
 namespace {
 
 constexpr double Z = 0.175;
@@ -75,3 +77,5 @@ TEST_CASE("what few modes cannot be is refused") {
   REQUIRE_FALSE(refused);
   CHECK(refused.error().find("modes come no nearer") != std::string::npos);
 }
+
+}  // namespace propagate_termination_modes

@@ -5,6 +5,8 @@
 
 #include <random>
 
+namespace propagate_termination_table {
+
 namespace {
 
 constexpr double Z = 0.175;
@@ -76,3 +78,5 @@ TEST_CASE("a reflection function is an admittance, and may not give back more th
   CHECK(refused.error().find("not passive") != std::string::npos);
   CHECK_FALSE(rosin::reflecting_end({}, 48e3));
 }
+
+}  // namespace propagate_termination_table

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace propagate_termination {
+
 namespace {
 
 const rosin::modal_termination bridge{{{460, 35, 0.175 / 0.12}, {900, 30, 0.175 / 0.05}}};
@@ -48,3 +50,5 @@ TEST_CASE("a damper beside a spring: in phase with the force above its corner, s
   CHECK(mode.pole().real() == test::approx(-2 * std::numbers::pi * 30).epsilon(1e-4));
   CHECK(mode.compliance_s() == test::approx(0.01 / (2 * std::numbers::pi * 30)));
 }
+
+}  // namespace propagate_termination

@@ -11,6 +11,8 @@
 
 #include "support/approx.hpp"
 
+namespace propagate_transmission {
+
 namespace {
 
 constexpr double rate_Hz = 128e3;
@@ -105,3 +107,5 @@ TEST_CASE(
   };
   CHECK(early(1) < 0.3 * early(0));
 }
+
+}  // namespace propagate_transmission

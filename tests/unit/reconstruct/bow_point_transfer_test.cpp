@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace reconstruct_bow_point_transfer {
+
 namespace {
 
 using complex = std::complex<double>;
@@ -96,3 +98,5 @@ TEST_CASE("the paper's Airy kernels, inverted by time reversal, are an all-pass 
     CHECK(std::abs(airy.forward(f) * airy.back(f) - 1.0) < 4e-3);
   }
 }
+
+}  // namespace reconstruct_bow_point_transfer

@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace reconstruct_consistency {
+
 TEST_CASE("Delta is 0 for equal waveforms, 1 for uncorrelated ones, sqrt(2) for opposite ones") {
   std::vector<double> a, b, shifted, opposite;
   for (int i = 0; i < 1000; ++i) {
@@ -30,3 +32,5 @@ TEST_CASE("samples that are not known in both are left out; without any there is
   CHECK(rosin::consistency_delta(std::vector<double>{nan}, std::vector<double>{1}) == 0);
   CHECK(rosin::consistency_delta(std::vector<double>{}, std::vector<double>{}) == 0);
 }
+
+}  // namespace reconstruct_consistency

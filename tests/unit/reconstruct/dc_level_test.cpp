@@ -8,6 +8,8 @@
 
 #include "support/approx.hpp"
 
+namespace reconstruct_dc_level {
+
 TEST_CASE("the loop's middle is put at 0.65 times the normal force, either way the bow moves") {
   for (const double way : {1.0, -1.0}) {
     std::vector<double> force, velocity;
@@ -29,3 +31,5 @@ TEST_CASE("without slip, or without a normal force, there is no estimate") {
   CHECK_FALSE(rosin::estimate_dc_level(force, sticking, 0.2, 0.3).available);
   CHECK_FALSE(rosin::estimate_dc_level(force, sliding, 0.2, 0).available);
 }
+
+}  // namespace reconstruct_dc_level

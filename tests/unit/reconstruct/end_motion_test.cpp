@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace reconstruct_end_motion {
+
 namespace {
 
 constexpr double rate_Hz = 48e3, pi = std::numbers::pi;
@@ -100,3 +102,5 @@ TEST_CASE("a measured table moves as the modes that it was measured on") {
   CHECK(worst(by_table.times_impedance_N, by_modes.times_impedance_N, 300, 3700) < 0.01);
   CHECK(by_table.settled > by_table.known.begin);
 }
+
+}  // namespace reconstruct_end_motion

@@ -5,6 +5,8 @@
 
 #include <random>
 
+namespace reconstruct_end_sensitivity {
+
 namespace {
 
 using moving = rosin::with_moving_ends<rosin::full_physics>;
@@ -52,3 +54,5 @@ TEST_CASE("the columns are what a change of the modes does to the reconstruction
       CHECK(std::sqrt(off / size) < 0.01);
     }
 }
+
+}  // namespace reconstruct_end_sensitivity

@@ -12,6 +12,8 @@
 
 #include "support/approx.hpp"
 
+namespace reconstruct_fine_tune {
+
 namespace {
 
 const rosin::string_parameters string{
@@ -99,3 +101,5 @@ TEST_CASE("what the versions disagree in beyond noise widens the error bars") {
   const auto sure = rosin::uncertainty(off, motion, answers, off.noise_N, limits, rate_Hz);
   CHECK(sure.force_model_N > sure.force_noise_N);
 }
+
+}  // namespace reconstruct_fine_tune

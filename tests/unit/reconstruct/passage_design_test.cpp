@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace reconstruct_passage_design {
+
 namespace {
 
 rosin::bow_point contact(double position) { return rosin::contact_at({0.314, 72.5, 659.69, 4.7e-5, {1000, 1e-9, 0}}, position); }
@@ -70,3 +72,5 @@ TEST_CASE("what does not fit says what would") {
   REQUIRE_FALSE(half);
   CHECK(half.error().find("half-length 6, not 5") != std::string::npos);
 }
+
+}  // namespace reconstruct_passage_design

@@ -10,6 +10,8 @@
 #include <limits>
 #include <vector>
 
+namespace reconstruct_passage_reconstructor {
+
 namespace {
 
 constexpr double rate_Hz = 128e3;
@@ -161,3 +163,5 @@ TEST_CASE("reset brings back the beginning") {
   CHECK(different == 0);
   CHECK(a.back().force_near_N == a.back().force_far_N);  // one version alone: both fields hold it
 }
+
+}  // namespace reconstruct_passage_reconstructor

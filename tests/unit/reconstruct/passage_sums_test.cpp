@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+namespace reconstruct_passage_sums {
+
 namespace {
 
 template <class T>
@@ -84,3 +86,5 @@ TEST_CASE_TEMPLATE("a window moves on by one", T, float, double) {
     CHECK(sum == plain);
   }
 }
+
+}  // namespace reconstruct_passage_sums

@@ -11,6 +11,8 @@
 
 #include "support/approx.hpp"
 
+namespace reconstruct_periodic_part {
+
 namespace {
 
 constexpr double rate_Hz = 48e3;
@@ -56,3 +58,5 @@ TEST_CASE("what does not repeat, is too short, silent or not a number is said") 
   x[77] = std::numeric_limits<double>::quiet_NaN();
   CHECK(rosin::find_periodic_part(x, x, rate_Hz, 300, 20e3).error().find("sample 77") != std::string::npos);
 }
+
+}  // namespace reconstruct_periodic_part

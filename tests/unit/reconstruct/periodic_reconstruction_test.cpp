@@ -11,6 +11,8 @@
 
 #include "support/approx.hpp"
 
+namespace reconstruct_periodic_reconstruction {
+
 namespace {
 
 constexpr double rate_Hz = 128e3, played_Hz = 648.37;  // a period of 197.418 samples: nothing integral about it
@@ -112,3 +114,5 @@ TEST_CASE("where an end hardly feels a force the quotient is damped, and the ban
   CHECK(motion->regularised[0].stop_Hz > 3 * played_Hz);
   for (const double f : motion->force_near_N) CHECK(std::abs(f) < 100);
 }
+
+}  // namespace reconstruct_periodic_reconstruction

@@ -13,6 +13,8 @@
 
 #include <cmath>
 
+namespace reconstruct_reconstructor {
+
 namespace {
 
 const rosin::string_parameters string{
@@ -107,3 +109,5 @@ TEST_CASE("ends that move as declared cost nothing; taken for rigid they do") {
   CHECK(rosin::consistency_delta(mean_force(as_rigid), through_band(take.force_N)) > 0.005);
   CHECK(rosin::consistency_delta(as_rigid.force_near_N, as_rigid.force_far_N) > 0.01);
 }
+
+}  // namespace reconstruct_reconstructor

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace reconstruct_sensitivity {
+
 TEST_CASE("sensitivities are the differences of whole reconstructions") {
   constexpr double rate_Hz = 128e3;
   const rosin::band limits{20e3, 45e3};
@@ -47,3 +49,5 @@ TEST_CASE("sensitivities are the differences of whole reconstructions") {
     CHECK(worst_v < 0.02 * largest_v);
   }
 }
+
+}  // namespace reconstruct_sensitivity

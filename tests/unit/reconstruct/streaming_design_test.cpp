@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace reconstruct_streaming_design {
+
 TEST_CASE("a design that does not fit says what would") {
   const rosin::bow_point at = rosin::contact_at({0.314, 72.5, 659.69, 4.7e-5, {}}, 0.3);
   const rosin::band limits{30e3, 52e3};
@@ -22,3 +24,5 @@ TEST_CASE("latency is the longer passage and a little of the band's window") {
   CHECK(design->latency >= passage);
   CHECK(design->latency <= passage + 40);
 }
+
+}  // namespace reconstruct_streaming_design

@@ -10,6 +10,8 @@
 #include <limits>
 #include <vector>
 
+namespace reconstruct_streaming_reconstructor {
+
 namespace {
 
 constexpr double rate_Hz = 128e3;
@@ -75,3 +77,5 @@ TEST_CASE("reset brings back the beginning, and a NaN leaves when it has left th
   for (int i = 0; i < 1024; ++i) last = a({0.0F, 0.0F});
   CHECK(std::isfinite(last.force_N()));
 }
+
+}  // namespace reconstruct_streaming_reconstructor

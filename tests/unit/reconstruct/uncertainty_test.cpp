@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace reconstruct_uncertainty {
+
 TEST_CASE("white noise comes out of the kernels as large as stated") {
   constexpr double rate_Hz = 128e3;
   const rosin::band limits{20e3, 45e3};
@@ -59,3 +61,5 @@ TEST_CASE("what the convention of damping leaves open is counted, although both 
   CHECK(sure.velocity_model_m_s == test::approx(0.4 / std::numbers::sqrt2 / (2 * 500)).epsilon(1e-6));
   CHECK(sure.force_sd_N[n / 2] == test::approx(sure.force_model_N));
 }
+
+}  // namespace reconstruct_uncertainty

@@ -7,6 +7,8 @@
 
 #include <numbers>
 
+namespace report_csv {
+
 namespace {
 
 const double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -93,3 +95,5 @@ TEST_CASE("columns of different length are not written") {
   t.add("y", {1});
   CHECK(rosin::save_csv(folder / "t.csv", t, rosin::overwrite::refuse));
 }
+
+}  // namespace report_csv

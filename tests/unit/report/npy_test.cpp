@@ -7,6 +7,8 @@
 
 #include <cstring>
 
+namespace report_npy {
+
 TEST_CASE("the bytes of a NumPy file, format 1.0") {
   const test::temporary_folder folder;
   rosin::table t;
@@ -51,3 +53,5 @@ TEST_CASE("an empty table and ragged columns are refused") {
   t.add("y", {});
   CHECK(rosin::save_npy(folder / "t.npy", t, rosin::overwrite::refuse));
 }
+
+}  // namespace report_npy

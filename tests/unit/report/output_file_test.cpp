@@ -5,6 +5,8 @@
 
 #include <support/temporary_folder.hpp>
 
+namespace report_output_file {
+
 TEST_CASE("nothing is overwritten unless the caller says so") {
   const test::temporary_folder folder;
   const auto hello = [](std::ostream& out) { out << "hello"; };
@@ -35,3 +37,5 @@ TEST_CASE("a writer that fails leaves nothing behind") {
   }));
   CHECK(std::filesystem::is_empty(folder.str()));
 }
+
+}  // namespace report_output_file

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace report_table {
+
 TEST_CASE("columns are found by name and have to be of one length") {
   rosin::table t;
   CHECK(t.rows() == 0);
@@ -17,3 +19,5 @@ TEST_CASE("columns are found by name and have to be of one length") {
   t.add("velocity_m_s", {1});
   CHECK_FALSE(t.is_rectangular());
 }
+
+}  // namespace report_table

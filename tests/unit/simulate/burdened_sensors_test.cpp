@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_burdened_sensors {
+
 namespace {
 
 constexpr double step_s = 1 / 2048e3, pi = 3.14159265358979323846;
@@ -77,3 +79,5 @@ TEST_CASE("a sensor that rings at twice a tone passes on what it bends before th
   CHECK(octave(false) == test::approx(q * curve / 2).epsilon(0.02));
   CHECK(octave(true) == test::approx(own * own * curve / 2).epsilon(0.02));
 }
+
+}  // namespace simulate_burdened_sensors

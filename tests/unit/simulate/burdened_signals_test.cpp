@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+namespace simulate_burdened_signals {
+
 namespace {
 
 const rosin::string_parameters string{
@@ -162,3 +164,5 @@ TEST_CASE("what cannot be is refused") {
   b = {}, b.sensors.clock_drift = 0.02;
   says(b, "clock");
 }
+
+}  // namespace simulate_burdened_signals

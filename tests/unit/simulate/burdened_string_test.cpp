@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace simulate_burdened_string {
+
 namespace {
 
 const rosin::modal_rig rig{
@@ -95,3 +97,5 @@ TEST_CASE("a string whose ends resist turning decays after a pluck as its closed
     CHECK(std::sqrt(off / all) < 8e-4);
   }
 }
+
+}  // namespace simulate_burdened_string

@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+namespace simulate_burdened_take {
+
 namespace {
 
 const rosin::modal_rig rig{
@@ -101,3 +103,5 @@ TEST_CASE("a stroke is that of modal_stroke; a contact of no width is one of ver
   }
   CHECK(test::apart(near, std::span(late).first(900)) < 0.05);  // up to the straight line between two samples
 }
+
+}  // namespace simulate_burdened_take

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_converter {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -107,3 +109,5 @@ TEST_CASE("normal deviates by Box and Muller from the standard's twister: the sa
   CHECK(between > 3);
   CHECK(between < 4);
 }
+
+}  // namespace simulate_converter

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_energy_account {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -83,3 +85,5 @@ TEST_CASE("more modes than fit into a lane keep their shapes") {
     wanted += std::pow(std::sin(pi * m.number * 0.237) * std::abs(rosin::respond_over_step(m, 1e-6).end), 2) * m.mass_kg / 2;
   CHECK(account.total().stored_J == test::approx(wanted).epsilon(1e-6));
 }
+
+}  // namespace simulate_energy_account

@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_modal_bank {
+
 namespace {
 
 using complex = std::complex<double>;
@@ -158,3 +160,5 @@ TEST_CASE(
   CHECK(moved.free().velocity[1] == test::approx(both.free().velocity[1]).epsilon(1e-10));
   CHECK(moved.free().far == test::approx(both.free().far).epsilon(1e-10));
 }
+
+}  // namespace simulate_modal_bank

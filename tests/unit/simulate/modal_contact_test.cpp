@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_modal_contact {
+
 namespace {
 
 rosin::modal_rig soft_rig(double quality) {
@@ -109,3 +111,5 @@ TEST_CASE("a contact that is told to stay where it is does what it would have do
     told.apply(force), left_alone.apply(force);
   }
 }
+
+}  // namespace simulate_modal_contact

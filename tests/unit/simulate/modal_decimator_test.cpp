@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_modal_decimator {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -58,3 +60,5 @@ TEST_CASE("the line's integral is kept") {
   for (const double s : decimate.lines(steps)) sum += s / 128e3;
   CHECK(sum == test::approx(3 * step).epsilon(1e-4));
 }
+
+}  // namespace simulate_modal_decimator

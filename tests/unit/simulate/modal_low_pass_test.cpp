@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_modal_low_pass {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -61,3 +63,5 @@ TEST_CASE("the Gauss rule is exact to the seventh power") {
   CHECK(seventh == test::approx(1.0 / 8).epsilon(1e-13));
   CHECK(std::abs(eighth - 1.0 / 9) > 1e-6);
 }
+
+}  // namespace simulate_modal_low_pass

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_modal_pluck {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -167,3 +169,5 @@ TEST_CASE("senseless plucks are refused") {
   CHECK(!rosin::simulate_pluck({}, {}));
   CHECK(rosin::simulate_pluck({}, {}).error() == "string: length, tension and pitch must be above 0");
 }
+
+}  // namespace simulate_modal_pluck

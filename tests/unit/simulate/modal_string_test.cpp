@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_modal_string {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -86,3 +88,5 @@ TEST_CASE("torsion: harmonic, one Q, and as stiff as the surface against both en
   CHECK(deflection == test::approx(0.3 * 0.7 * 0.314 / (Z * c)).epsilon(1e-3));
   CHECK(rosin::torsional_modes({.string = e_string}, 4e7).empty());
 }
+
+}  // namespace simulate_modal_string

@@ -10,6 +10,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_modal_stroke {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -211,3 +213,5 @@ TEST_CASE(
   const auto off = rosin::simulate_stroke(e_rig(), curve_law{}, travelling{steady, 0.3, 1.2}, {.duration_s = 0.09}, quick);
   CHECK(!off);
 }
+
+}  // namespace simulate_modal_stroke

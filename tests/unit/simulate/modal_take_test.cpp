@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_modal_take {
+
 namespace {
 
 rosin::modal_rig sound_rig() {
@@ -64,3 +66,5 @@ TEST_CASE("motions without slip are told from bowed motion") {
   take.slipping = 1;
   CHECK(rosin::motion_of(take) == rosin::bowed_motion::sliding);
 }
+
+}  // namespace simulate_modal_take

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_mode_step {
+
 namespace {
 
 using complex = std::complex<double>;
@@ -76,3 +78,5 @@ TEST_CASE("mobility is the velocity per force at the step's end, and a mode that
   CHECK(still.advance(3).velocity == 0);
   CHECK(still.advance(3).displacement == 0);
 }
+
+}  // namespace simulate_mode_step

@@ -8,6 +8,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_moving_load {
+
 TEST_CASE("a lump that is carried along takes M v' + R v + K y, to second order in the step") {
   const rosin::point_load load{0.3, 2e-5, 0.004, 150};
   const double w = 2 * 3.14159265358979323846 * 440, speed = 0.7;
@@ -28,3 +30,5 @@ TEST_CASE("a lump that is carried along takes M v' + R v + K y, to second order 
   CHECK(worst(1e-6) < 1e-5 * full);
   CHECK(worst(4e-6) / worst(2e-6) == test::approx(4).epsilon(0.02));
 }
+
+}  // namespace simulate_moving_load

@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_moving_support {
+
 namespace {
 
 constexpr double step_s = 1 / 1024e3, pi = 3.14159265358979323846;
@@ -47,3 +49,5 @@ TEST_CASE("at rest every mode holds the same force, and stays") {
   for (int n = 0; n < 1000; ++n) end.move(step_s, force);
   CHECK(end.sum(&rosin::moving_mode::u) == test::approx(1e-5));
 }
+
+}  // namespace simulate_moving_support

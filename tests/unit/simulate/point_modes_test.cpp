@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_point_modes {
+
 TEST_CASE("a point of the string in a bank of modes with all its ports and ends moves just so") {
   const rosin::modal_rig rig{.string = {.length_m = 0.314, .tension_N = 72.5, .fundamental_Hz = 660}, .torsion = {7, 3.5, 15}};
   for (const double limit_Hz : {5e3, 40e3, 110e3}) {  // one, eight and more modes
@@ -44,3 +46,5 @@ TEST_CASE("a lasting force brings it to rest, deflected by its compliance; witho
   CHECK(none.free() == 0.0);
   CHECK(none.mobility() == 0.0);
 }
+
+}  // namespace simulate_point_modes

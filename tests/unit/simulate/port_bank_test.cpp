@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_port_bank {
+
 namespace {
 
 const rosin::modal_rig rig{
@@ -97,3 +99,5 @@ TEST_CASE("a free string keeps to the pitch that its mean tension gives") {
   const double pitch = (crossings - 1) / ((last - first) * step_s);
   CHECK(pitch / one.string.fundamental_Hz - 1 == test::approx(3.0 / 8 * raised).epsilon(0.02));
 }
+
+}  // namespace simulate_port_bank

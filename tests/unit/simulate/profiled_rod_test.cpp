@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_profiled_rod {
+
 TEST_CASE("straight between break points, constant outside") {
   const rosin::profiled_rod rod{.speed_m_s = {{0.1, 0.2}, {0.3, -0.2}, {0.4, 0}}, .normal_force_N = {{0.2, 0.5}}};
   CHECK(rod(0).velocity_m_s == 0.2);
@@ -61,3 +63,5 @@ TEST_CASE("it travels where it has a way, and stays where it has none") {
   CHECK(rod.position(0.15) == test::approx(0.2));
   CHECK(rod.position(1) == 0.1);
 }
+
+}  // namespace simulate_profiled_rod

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_random_rig {
+
 namespace {
 
 bool within(double x, double low, double high) { return x >= low && x <= high; }
@@ -106,3 +108,5 @@ TEST_CASE("a rig that cannot be simulated is refused with the reason") {
   REQUIRE(!recordings);
   CHECK(recordings.error().find("position") != std::string::npos);
 }
+
+}  // namespace simulate_random_rig

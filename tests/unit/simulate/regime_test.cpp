@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_regime {
+
 namespace {
 
 constexpr double rate = 48000, f0 = 480;  // 100 samples a period
@@ -94,3 +96,5 @@ TEST_CASE("a string bowed as a player would settles into Helmholtz motion, and a
   CHECK(firm.transient_periods < 60);
   CHECK_MESSAGE(faint.regime != rosin::bowed_regime::helmholtz, name_of(faint.regime));
 }
+
+}  // namespace simulate_regime

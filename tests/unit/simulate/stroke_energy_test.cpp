@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_stroke_energy {
+
 TEST_CASE("what is not found again is told as a part of what was given") {
   rosin::stroke_energy e{.rod_J = 10, .friction_J = 6, .transverse = {3, 1, 1.7}, .torsion = {1, 0.2, 0.8}, .left_out_J = 0.1};
   CHECK(e.string_error() == test::approx(0.3 / 4));
@@ -16,3 +18,5 @@ TEST_CASE("what is not found again is told as a part of what was given") {
   CHECK(rosin::stroke_energy{}.error() == 0.0);
   CHECK(rosin::stroke_energy{}.string_error() == 0.0);
 }
+
+}  // namespace simulate_stroke_energy

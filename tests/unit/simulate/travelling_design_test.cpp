@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace simulate_travelling_design {
+
 namespace {
 
 const rosin::modal_rig& rig = test::violin_e_string;
@@ -62,3 +64,5 @@ TEST_CASE("ways off the string, too near an end, and ends that a rate cannot hol
   CHECK(rosin::design_travelling_wave(rig, {0.1, 0.2}, {.oversampling = 2}, ends).error().find("termination") !=
         std::string::npos);
 }
+
+}  // namespace simulate_travelling_design

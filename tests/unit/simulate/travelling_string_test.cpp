@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace simulate_travelling_string {
+
 namespace {
 
 rosin::modal_rig rig(bool turns) {
@@ -114,3 +116,5 @@ TEST_CASE("in single precision the same motion") {
     exact.apply(force), single.apply(static_cast<float>(force));
   }
 }
+
+}  // namespace simulate_travelling_string

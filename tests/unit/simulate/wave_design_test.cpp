@@ -9,6 +9,8 @@
 
 #include <rosin/simulate/wave_string.hpp>
 
+namespace simulate_wave_design {
+
 namespace {
 
 const rosin::modal_rig& rig = test::violin_e_string;
@@ -59,3 +61,5 @@ TEST_CASE("impossible rigs and places are refused with the reason") {
   bad.string.tension_N = std::nan("");
   CHECK_FALSE(rosin::design_wave(bad, 0.3));
 }
+
+}  // namespace simulate_wave_design

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_wave_echo {
+
 namespace {
 
 const rosin::string_parameters e_string{.length_m = 0.314,
@@ -60,3 +62,5 @@ TEST_CASE("an end that is too near is refused") {
   });
   CHECK_FALSE(loop);
 }
+
+}  // namespace simulate_wave_echo

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace simulate_wave_end {
+
 namespace {
 
 constexpr double rate_Hz = 256e3, pi = 3.14159265358979323846;
@@ -63,3 +65,5 @@ TEST_CASE("what cannot be simulated is refused") {
   CHECK_FALSE(rosin::problem_with(rosin::modal_termination{{{0, 30, 1}}}, rate_Hz).empty());
   CHECK(rosin::problem_with(rosin::modal_termination{{{120e3, 30, 1}}}, rate_Hz).find("rate") != std::string::npos);
 }
+
+}  // namespace simulate_wave_end

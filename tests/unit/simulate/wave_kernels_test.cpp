@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_wave_kernels {
+
 TEST_CASE("lags, look-ahead and mobility, also in single precision") {
   rosin::wave_kernels<double> k;
   k.stride = 2;
@@ -22,3 +24,5 @@ TEST_CASE("lags, look-ahead and mobility, also in single precision") {
   CHECK(single.echo[0].taps[1] == 0.25F);
   CHECK(single.echo[0].last() == 6);
 }
+
+}  // namespace simulate_wave_kernels

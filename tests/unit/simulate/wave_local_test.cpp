@@ -9,6 +9,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_wave_local {
+
 namespace {
 
 const rosin::string_parameters e_string{
@@ -53,3 +55,5 @@ TEST_CASE("a line through samples weighs a frequency by sinc squared") {
   const double w = 1200, h = 1e-3, x = w * h / 2;
   CHECK(rosin::straight_line_weight(w, h) == test::approx(std::pow(std::sin(x) / x, 2)));
 }
+
+}  // namespace simulate_wave_local

@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_wave_loop {
+
 TEST_CASE("the response to a growing or dying motion is the sum over the taps") {
   const rosin::fir kernel{3, {0.5, -0.25, 2}};
   const std::complex<double> z{0.9, 0.3};
@@ -43,3 +45,5 @@ TEST_CASE("the gain counts where a partial could grow, and only there") {
   loop.echo[1].taps = {-1.2};
   CHECK(rosin::largest_gain(loop, 30) == test::approx(1.2));
 }
+
+}  // namespace simulate_wave_loop

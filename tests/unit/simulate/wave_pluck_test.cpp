@@ -9,6 +9,8 @@
 
 #include <rosin/simulate/burdened_signals.hpp>
 
+namespace simulate_wave_pluck {
+
 namespace {
 
 rosin::modal_rig plain_rig() {
@@ -64,3 +66,5 @@ TEST_CASE("plucks that cannot be are refused with the reason") {
   CHECK(rosin::simulate_wave_pluck(plain_rig(), {.force_N = std::nan("")}).error().find("released") != std::string::npos);
   CHECK(rosin::simulate_wave_pluck(plain_rig(), {.position = 1.3}).error().find("position") != std::string::npos);
 }
+
+}  // namespace simulate_wave_pluck

@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_wave_settings {
+
 namespace {
 
 const rosin::modal_rig rig{
@@ -27,3 +29,5 @@ TEST_CASE("what cannot be is said") {
   CHECK(rosin::problem_with_contact(rig, 0.02, {.oversampling = 1}).find("three steps") != std::string::npos);
   CHECK(rosin::problem_with_contact(rig, 0.3, {.sample_rate_Hz = 2000, .oversampling = 1}).find("pitch") != std::string::npos);
 }
+
+}  // namespace simulate_wave_settings

@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace simulate_wave_string {
+
 namespace {
 
 constexpr double Z = 0.175, step_s = 1e-5;
@@ -93,3 +95,5 @@ TEST_CASE("block sums are those of the definition") {
     CHECK(thin[i] == test::approx(sum));
   }
 }
+
+}  // namespace simulate_wave_string

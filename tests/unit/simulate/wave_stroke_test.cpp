@@ -10,6 +10,8 @@
 #include <rosin/simulate/burdened_signals.hpp>
 #include <rosin/simulate/profiled_rod.hpp>
 
+namespace simulate_wave_stroke {
+
 namespace {
 
 const rosin::modal_rig& rig = test::violin_e_string;
@@ -260,3 +262,5 @@ TEST_CASE("a string whose velocity has no bound is reported, not returned") {
             .error()
             .find("without bound") != std::string::npos);
 }
+
+}  // namespace simulate_wave_stroke

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace simulate_wave_way {
+
 namespace {
 
 constexpr double rate_Hz = 512e3;
@@ -72,3 +74,5 @@ TEST_CASE("in single precision the same kernels") {
   for (std::size_t i = 0; i < out.size(); ++i)
     CHECK(static_cast<double>(out[i]) == test::approx(exact[i]).epsilon(1e-5).scale(0.1));
 }
+
+}  // namespace simulate_wave_way

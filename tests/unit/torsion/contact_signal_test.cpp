@@ -5,6 +5,8 @@
 
 #include <rosin/torsion/torsion_response.hpp>
 
+namespace torsion_contact_signal {
+
 namespace {
 
 constexpr double rate = 128e3;
@@ -75,3 +77,5 @@ TEST_CASE("contact signal: two signals through one transform are the sum of both
   for (std::size_t i = 500; i < 2500; ++i)  // all of the tone at 2000 Hz, nothing of the one at 7000 Hz
     CHECK(std::abs(low[i] - one[i] - 0.5 * 0.3) < 0.02);
 }
+
+}  // namespace torsion_contact_signal

@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+namespace torsion_rod_approach {
+
 namespace {
 
 constexpr double rate_Hz = 100e3, period_s = 5e-3, rod_m_s = -0.2;
@@ -56,3 +58,5 @@ TEST_CASE(
   CHECK(rosin::rod_approach{}.lag(1) == 0);
   CHECK(rosin::rod_approach{}.within_s(0.1) == 0);
 }
+
+}  // namespace torsion_rod_approach

@@ -6,6 +6,8 @@
 #include <complex>
 #include <limits>
 
+namespace torsion_stick_data {
+
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -72,3 +74,5 @@ TEST_CASE("stick data: sticking samples keep a window's reach from every slip") 
     CHECK(rows.own(static_cast<Eigen::Index>(i), 0) == velocity[rows.sample[i]]);
   }
 }
+
+}  // namespace torsion_stick_data

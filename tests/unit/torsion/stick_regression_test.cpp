@@ -7,6 +7,8 @@
 
 #include "support/approx.hpp"
 
+namespace torsion_stick_regression {
+
 namespace {
 
 /// y = 2 a - 3 b + level + noise with correlation `hold` samples and a few outliers.
@@ -76,3 +78,5 @@ TEST_CASE("stick regression: likelihood prefers the model that is true") {
   r.shared.conservativeResize(r.shared.rows(), 1);
   CHECK(whole > rosin::stick_regression({r}).log_likelihood + 500);
 }
+
+}  // namespace torsion_stick_regression

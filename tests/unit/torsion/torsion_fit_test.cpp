@@ -11,6 +11,8 @@
 
 #include "support/approx.hpp"
 
+namespace torsion_torsion_fit {
+
 namespace {
 
 constexpr double rate = 128e3;
@@ -108,3 +110,5 @@ TEST_CASE("torsion fit: says what the data cannot tell") {
     CHECK_FALSE(rosin::fit_torsion({{few, few, rate, 0.2, {2.3e-4, 5.3e-4}, 0.175, 1e-3}}));
   }
 }
+
+}  // namespace torsion_torsion_fit

@@ -6,6 +6,8 @@
 #include <rosin/simulate/modal_bank.hpp>
 #include <rosin/torsion/torsion_response.hpp>
 
+namespace torsion_torsion_modes {
+
 namespace {
 
 constexpr double one_way = 0.5 / 660.0 / 7;
@@ -95,3 +97,5 @@ TEST_CASE("torsion modes: each convention has one other way about in either resp
     CHECK(rosin::torsion_convention(rosin::in_modes(d), rosin::is_causal(d)) == d);
   }
 }
+
+}  // namespace torsion_torsion_modes

@@ -5,6 +5,8 @@
 
 #include <initializer_list>
 
+namespace torsion_torsion_pair {
+
 namespace {
 
 constexpr double pair_impedance = 0.6, pair_q = 15;
@@ -57,3 +59,5 @@ TEST_CASE("torsion pair: viscous modes and a constant Q agree where the Q does n
     CHECK(alike(b.across, a.across, 2e-3));
   }
 }
+
+}  // namespace torsion_torsion_pair

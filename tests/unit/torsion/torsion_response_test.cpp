@@ -5,6 +5,8 @@
 
 #include "support/approx.hpp"
 
+namespace torsion_torsion_response {
+
 namespace {
 
 using complex = std::complex<double>;
@@ -171,3 +173,5 @@ TEST_CASE("torsion: on a grid of frequencies it is what it is at each of them") 
   for (std::size_t k = 0; k < grid.size(); k += 97)
     CHECK(std::abs(grid[k] - at(0.7 * static_cast<double>(k))) <= 1e-11 * std::abs(grid[k]));
 }
+
+}  // namespace torsion_torsion_response
