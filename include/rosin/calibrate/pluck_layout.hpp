@@ -239,7 +239,6 @@ public:
   }
 
   /// Whether a string could be like this, and near enough to where the fit began.
-  template <class = void>
   [[nodiscard]] bool plausible(const Eigen::VectorXd& v, const Eigen::VectorXd& start, double highest_Hz) const {
     bool ok = v.allFinite() && std::abs(v[fundamental] / start[fundamental] - 1) < 0.08 && v[inverse_quality] > 1e-7 &&
               v[inverse_quality] < 0.2 && v[inharmonicity] > -1e-5 && v[inharmonicity] < 0.01 && std::abs(v[convention]) < 300 &&
@@ -251,7 +250,6 @@ public:
     for (Eigen::Index p = first_of_uneven(); p < first_of_ends(); ++p) ok = ok && std::abs(v[p]) < 2 * uneven_doubt;
     return ok && ends_within_doubt(v, 2);
   }
-  template <class = void>
   [[nodiscard]] bool ends_within_doubt(const Eigen::VectorXd& v, double times = 1) const {
     for (Eigen::Index p = first_of_ends(); p < size(); ++p)
       if (!(std::abs(v[p]) <= times * end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3])) return false;

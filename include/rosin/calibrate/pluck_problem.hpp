@@ -35,7 +35,6 @@ struct plain_plucks : pluck_layout {
 
   plain_plucks(const pluck_layout& layout, std::array<double, 2> corner_Hz) : pluck_layout{layout}, ac_coupled_Hz{corner_Hz} {}
   /// The ringing partials first, then one slow line a channel.
-  template <class = void>
   [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
                                                const band& limits, int most) const {
     const double newtons = std::exp(v[at(take, strength)]), released = release_s(v, take);

@@ -98,7 +98,6 @@ public:
   }
 
   /// Each take's own tone of the rod's speed: two more columns of its own.
-  template <class = void>
   void add_rod_tone(stick_design& d, double frequency_Hz) const {
     for (std::size_t t = 0; t < records_.size(); ++t)
       for (const double turn : quarter_turns) d.add_own(t, rod_wave(records_[t], frequency_Hz, turn));
@@ -218,7 +217,6 @@ private:
     }
   }
 
-  template <class = void>
   void include_found(stick_design& d) {
     if (model_.rod) {
       const auto [frequency_Hz, q, mass_kg] = *model_.rod;

@@ -78,10 +78,10 @@ ROSIN_INSTANTIATE(unexplained_part left_by(const line_problem<scene_plucks>&, co
 
 }  // namespace detail
 
+template <class Real = double>
 class place_search {
 public:
   /// gain: recorded / true of each channel; noise: white, of each channel.
-  template <class = void>
   place_search(const pluck_scene& scene, std::array<double, 2> gain, const band& limits, const unexplained_part& left,
                std::array<double, 2> noise)
       : scene_{scene}, gain_{gain}, sure_{1 / noise[0], 1 / noise[1]}, line_{line_over(
@@ -102,7 +102,6 @@ public:
   }
 
   /// The place that leaves least.
-  template <class = void>
   [[nodiscard]] acting_place operator()() const {
     std::vector<acting_place> all{on_string()};
     for (const acting on : {acting::near_end, acting::far_end, acting::near_channel, acting::far_channel})
@@ -112,7 +111,6 @@ public:
     return all[0];
   }
   /// The same of places on the string, between two of them.
-  template <class = void>
   [[nodiscard]] acting_place on_string(double from = 0, double to = 1) const {
     constexpr int grid = 64;
     const int first = 1 + static_cast<int>(from * grid), last = static_cast<int>(to * grid) - 1;
@@ -125,18 +123,15 @@ public:
   }
 
   /// How much of each nuisance is in what is left, the action at that place taken out.
-  template <class = void>
   [[nodiscard]] Eigen::VectorXd nuisances(const acting_place& at) const {
     const auto [left, moved] = parts_across(at.on, at.position);
     return fitted(left, moved);
   }
   /// Power across the shares of a place, nuisances as they are and as far as they are from what is known of them, over noise.
-  template <class = void>
   [[nodiscard]] double misfit(const acting_place& at) const {
     return parts_across(at.on, at.position).first.squaredNorm() / noise_power_;
   }
   /// Their covariance, noise being all that lies across.
-  template <class = void>
   [[nodiscard]] Eigen::MatrixXd covariance(const acting_place& at) const {
     return row_variance() * inverse_normal(parts_across(at.on, at.position).second);
   }
@@ -144,7 +139,6 @@ public:
   [[nodiscard]] bool is_mismatch() const { return 2 * noise_power_ < most_noise * power_; }
   /// No other kind of place does nearly as well, and it accounts for nearly all that the nuisances by themselves do not, which
   /// is no small part of the mismatch: where they could take up most of it, the fit was led astray, and so is the place.
-  template <class = void>
   [[nodiscard]] bool is_clear(const acting_place& at) const {
     const double beside = power_beside_nuisances();
     return beside > least_beside * power_ && at.left < clearly_less * at.left_elsewhere &&
@@ -164,7 +158,6 @@ private:
   static constexpr std::size_t most_bins = 2000;
   using spectrum_pair = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, 2>;
 
-  template <class = void>
   [[nodiscard]] spectrum_pair spectra(const std::array<Eigen::VectorXd, 2>& x) const {
     spectrum_pair out(static_cast<Eigen::Index>(bins_.size()), 2);
     for (std::size_t c = 0; c < 2; ++c) {
@@ -176,7 +169,6 @@ private:
   }
 
   /// Shares of both channels, whitened.
-  template <class = void>
   [[nodiscard]] Eigen::Vector2cd shares(acting on, double x, std::size_t i) const {
     if (on == acting::near_channel) return {1, 0};
     if (on == acting::far_channel) return {0, 1};
@@ -195,7 +187,6 @@ private:
 
   /// What lies across the shares of a place: of the mismatch, and of each nuisance (a column each); real parts, then imaginary
   /// ones, then what is known of the nuisances.
-  template <class Real = double>
   [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::MatrixXd> parts_across(acting on, double x) const {
     const auto rows = static_cast<Eigen::Index>(bins_.size()), columns = static_cast<Eigen::Index>(nuisances_.size());
     const auto known = static_cast<Eigen::Index>(doubts_.size());
@@ -214,7 +205,6 @@ private:
     return out;
   }
   /// (J^T J)^-1, what no column tells left small; zero for a column that is (of one channel's gain, across the other).
-  template <class Real = double>
   [[nodiscard]] static Eigen::MatrixXd inverse_normal(const Eigen::MatrixXd& moved) {
     const Eigen::VectorX<Real> scale = moved.colwise().norm().unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0; });
     const Eigen::MatrixX<Real> unit = moved * scale.asDiagonal();
@@ -223,12 +213,10 @@ private:
     return scale.asDiagonal() * normal.ldlt().solve(Eigen::MatrixX<Real>(scale.asDiagonal()));
   }
   /// Least squares of the first by the second.
-  template <class = void>
   [[nodiscard]] static Eigen::VectorXd fitted(const Eigen::VectorXd& left, const Eigen::MatrixXd& moved) {
     return inverse_normal(moved) * (moved.transpose() * left);
   }
   /// Power of both channels, with the nuisances' part taken out.
-  template <class Real = double>
   [[nodiscard]] double power_beside_nuisances() const {
     const auto parts = [](const spectrum_pair& r) {
       Eigen::VectorX<Real> out(4 * r.rows());
@@ -241,14 +229,12 @@ private:
     return nuisances_.empty() ? left.squaredNorm() : (left - moved * fitted(left, moved)).squaredNorm();
   }
   /// Power across the shares of a place, with the nuisances' part taken out.
-  template <class = void>
   [[nodiscard]] double across(acting on, double x) const {
     const auto [left, moved] = parts_across(on, x);
     return moved.cols() > 0 ? (left - moved * fitted(left, moved)).squaredNorm() : left.squaredNorm();
   }
 
   /// By golden sections; the standard deviation from the curvature, misfit counted as noise.
-  template <class = void>
   [[nodiscard]] acting_place refined(double low, double high) const {
     const double ratio = (std::sqrt(5.0) - 1) / 2;
     double a = high - ratio * (high - low), b = low + ratio * (high - low);

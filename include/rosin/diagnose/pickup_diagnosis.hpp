@@ -24,12 +24,12 @@ namespace rosin {
 
 namespace detail {
 
+template <class Real = double>
 class pickup_examination {
 public:
   pickup_examination(const std::vector<pickup_signal>& fitted, const std::vector<pickup_signal>& held, const pickup_question& ask)
       : fitted_{fitted}, held_{held}, ask_{ask} {}
 
-  template <class = void>
   [[nodiscard]] outcome<pickup_diagnosis> run() {
     if (const auto why = examine(fitted_, held_)) return *why;
     foretold_ = d_.law.found.empty() ? std::vector<numbered_frequency>{} : not_found();
@@ -43,7 +43,6 @@ public:
   }
 
 private:
-  template <class = void>
   [[nodiscard]] std::optional<failure> examine(const std::vector<pickup_signal>& fitted, const std::vector<pickup_signal>& held) {
     d_ = {}, ringings_.clear(), held_ringings_.clear(), held_heard_.clear(), held_glide_.clear(), held_tables_.clear();
     hear(fitted, ringings_, &d_.heard);
@@ -64,7 +63,6 @@ private:
       if (d_.table.find(l.number) == nullptr) out.push_back({l.number, l.pole.imag() / full_turn, 0});
     return out;
   }
-  template <class = void>
   [[nodiscard]] std::vector<pickup_signal> without_hum(std::vector<pickup_signal> signals,
                                                        const std::vector<pickup_ringing>& heard,
                                                        const std::vector<std::size_t>& which,
@@ -80,7 +78,6 @@ private:
   [[nodiscard]] static judged_stretch examined(const pickup_signal& s, const pickup_ringing& r) {
     return stretch_of(s, r.start_s, std::min(r.stop_s, r.start_s + 2));
   }
-  template <class = void>
   void hear(const std::vector<pickup_signal>& signals, std::vector<pickup_ringing>& out, std::vector<std::size_t>* which) {
     for (std::size_t i = 0; i < signals.size(); ++i) {
       auto r = listen(signals[i], ask_.fundamental_Hz, foretold_);
@@ -89,7 +86,6 @@ private:
     }
   }
 
-  template <class = void>
   void find_structure() {
     structure_question q{ask_.asks_for("tension-modulation"),
                          ask_.asks_for("second-polarization"),
@@ -119,7 +115,6 @@ private:
       if (const string_line* line = d_.table.find(shape.number[i])) shape.rate_per_s[i] = 2 * line->decay_per_s;
     return {std::move(shape), d_.glide_per_power * r.strength(), 0, 0, 1};
   }
-  template <class = void>
   void prepare_held() {
     structure_hypothesis still = d_.structure;
     still.glides = false;
@@ -129,7 +124,6 @@ private:
     }
   }
 
-  template <class = void>
   void find_law() {
     std::vector<law_effect> catalogue =
         law_effects(d_.table.lines.front().frequency_Hz / d_.table.lines.front().number, d_.table.lines.back().number);
@@ -146,7 +140,6 @@ private:
     d_.law = search_law(d_.table, declared, catalogue, held.empty() ? line_table{} : combined(held), limits);
   }
 
-  template <class = void>
   void find_stray_lines() {
     if (!ask_.asks_for("mains-hum") && !ask_.asks_for("sympathetic-string")) return;
     std::vector<stray_lines> each;
@@ -161,7 +154,6 @@ private:
     if (!ask_.asks_for("sympathetic-string")) d_.strays.others.clear();
     if (d_.strays.hum.empty()) d_.strays.mains_Hz = 0;
   }
-  template <class = void>
   [[nodiscard]] stray_lines strays_of(const pickup_signal& s, const pickup_ringing& r, const glide_found* glide) const {
     const auto& law = d_.law.best.law;
     std::vector<double> own;
@@ -220,7 +212,6 @@ private:
     return lines;
   }
 
-  template <class = void>
   void judge() {
     std::map<int, string_line> reference;
     for (const auto& l : d_.table.lines) reference.emplace(l.number, l);
@@ -243,7 +234,6 @@ private:
     s.values = low_pass<double>(s.values, s.rate_Hz, band{top + 0.1 * f0, top + 0.9 * f0});
     return s;
   }
-  template <class = void>
   [[nodiscard]] judged_ringing judged(std::size_t i, double offset) const {
     const auto& r = held_ringings_[i];
     const auto s = in_band(held_[held_heard_[i]]);
@@ -260,7 +250,6 @@ private:
     return j;
   }
 
-  template <class = void>
   void decide() {
     const double excess = std::sqrt(std::max(0.0, d_.after * d_.after - d_.floor * d_.floor)),
                  was = std::sqrt(std::max(0.0, d_.before * d_.before - d_.floor * d_.floor));
@@ -272,7 +261,6 @@ private:
         most = x, d_.worst = i;
     if (!d_.judged.empty()) locate(d_.judged[d_.worst]);
   }
-  template <class = void>
   void locate(const judged_ringing& j) {
     const auto block = std::max<std::size_t>(64, static_cast<std::size_t>(0.05 * j.rate_Hz));
     double most = 0;

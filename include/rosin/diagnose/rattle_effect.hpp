@@ -106,7 +106,7 @@ template <class = void>
 obstacle_motion at_place(const foretold& t, double x, double impedance_Ns_m) {
   const auto& r = t.left.force_N;
   damped_line_of_frequencies line =
-      place_search::line_over(static_cast<std::size_t>(r[0].size()), t.left.rate_Hz, t.limits.stop_Hz);
+      place_search<>::line_over(static_cast<std::size_t>(r[0].size()), t.left.rate_Hz, t.limits.stop_Hz);
   line.first = 0;
   const std::array spectrum{damped_spectrum(line, {r[0].data(), line.samples}),
                             damped_spectrum(line, {r[1].data(), line.samples})};

@@ -94,7 +94,6 @@ public:
   }
 
   /// Velocities that the contacts would have at the end of this step without force there; centre and twist together.
-  template <class = void>
   [[nodiscard]] Eigen::VectorXd free_velocity() {
     if (unknowns() == 0) return free_.head(contacts_);
     answer_ = solve_ * known_side();
@@ -104,14 +103,8 @@ public:
   [[nodiscard]] const Eigen::MatrixXd& mobility() const noexcept { return contact_mobility_; }
 
   /// What the modes left out add to the motion of the contacts, times the rate of the force there: centre, twist; m/N.
-  template <class = void>
-  [[nodiscard]] Eigen::VectorXd centre_left_out_m_N() const {
-    return (rest_ - rest_twist_).head(contacts_);
-  }
-  template <class = void>
-  [[nodiscard]] Eigen::VectorXd twist_left_out_m_N() const {
-    return rest_twist_.head(contacts_);
-  }
+  [[nodiscard]] Eigen::VectorXd centre_left_out_m_N() const { return (rest_ - rest_twist_).head(contacts_); }
+  [[nodiscard]] Eigen::VectorXd twist_left_out_m_N() const { return rest_twist_.head(contacts_); }
 
   /// What the motion adds to the tension, and what else is to be added to it (port_bank.hpp).
   [[nodiscard]] double raised_N() const noexcept { return bank_.raised_N(); }
@@ -265,7 +258,6 @@ private:
   }
 
   /// The free state at the end of the coming step: modes, what the modes left out take back, and where the ends carry the string.
-  template <class = void>
   void read() {
     bank_.read_free(free_, free_end_);
     for (int i = 0; i < points(); ++i) {

@@ -29,7 +29,7 @@ rosin::unexplained_part difference(const rosin::rig_burden& burden) {
   return out;
 }
 
-rosin::place_search search_of(const rosin::unexplained_part& part) {
+rosin::place_search<> search_of(const rosin::unexplained_part& part) {
   rosin::pluck_scene scene;
   const auto& s = test::plucked_rig.string;
   const double pi = 3.14159265358979323846;
