@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What it costs to include a public header: processor time of a translation unit that holds nothing else, the least of a few
 # runs, less that of an empty one; and the lines that the compiler gets to see. Prints a table, the dearest first.
-#   bench/header_cost.sh [HEADER…]     for instance core/stage.hpp; all of them without arguments
+#   bench/header_cost.sh [HEADER… | dearest]     for instance core/stage.hpp; all of them without arguments; dearest: those alone
+#                                                that no other header includes, and Eigen/Dense
 #   CXX=clang++ RUNS=3 FLAGS="-isystem /usr/include/eigen3" bench/header_cost.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -9,7 +10,10 @@ cxx=${CXX:-g++} runs=${RUNS:-2}
 read -ra flags <<<"${FLAGS:--isystem /usr/include/eigen3 -isystem /usr/include/gemmi/third_party}"
 compile=("$cxx" -std=c++20 -O0 -c -o /dev/null -x c++ -I include "${flags[@]}" -)
 
-if [ $# -gt 0 ]; then headers=("$@")
+if [ "${1:-}" = dearest ]; then
+  mapfile -t headers < <(cd include && find rosin -name '*.hpp' ! -path '*/adapt/*' | sort |
+    grep -vxF "$(find rosin -name '*.hpp' ! -path rosin/rosin.hpp -exec grep -hoE '<rosin/[^>]+>' {} + | tr -d '<>')" | sed 's|^rosin/||')
+elif [ $# -gt 0 ]; then headers=("$@")
 else mapfile -t headers < <(cd include/rosin && find . -name '*.hpp' | sed 's|^\./||' | sort); fi
 
 # seconds TEXT: of processor time to compile TEXT; nothing if it does not compile
@@ -24,7 +28,7 @@ seconds() {
 }
 
 empty=$(seconds "")
-echo "$("$cxx" --version | head -n 1), an empty file: $empty s"
+echo "$("$cxx" --version | head -n 1), an empty file: $empty s, Eigen/Dense: $(seconds '#include <Eigen/Dense>') s"
 echo
 echo "| header | s | thousand lines |"
 echo "|---|---|---|"

@@ -5,7 +5,10 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-.ci/install-packages
+.ci/install-packages clang
+cache=build/release/CMakeCache.txt
+if [ -e "$cache" ] && ! grep -q '^CMAKE_CXX_COMPILER:.*clang' "$cache"; then rm -rf build/release; fi  # begun with another compiler
+[ -x build/release/bin/rosin ] || echo "building build/release/bin/rosin: some five minutes on two cores, 1.5 GB a core"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 cmake --preset release >"$log" 2>&1 || { cat "$log" >&2; exit 1; }

@@ -9,6 +9,8 @@
 
 #include <benchmark/benchmark.h>
 
+namespace bench_pluck_fit {
+
 namespace {
 
 const rosin::pluck_guess guess{.fundamental_Hz = 660};
@@ -65,3 +67,5 @@ void pluck_fit_one_plain_step(benchmark::State& state) {
 
 BENCHMARK(pluck_fit)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
 BENCHMARK(pluck_fit_one_plain_step)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
+
+}  // namespace bench_pluck_fit

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <vector>
 
+namespace bench_fourier_resampler {
+
 namespace {
 
 /// Forty cosines below half the sampling rate of `band` samples per period, the highest included.
@@ -59,3 +61,5 @@ void lengths(benchmark::internal::Benchmark* bench) {
 
 BENCHMARK_TEMPLATE(resample, double)->Name("fourier_resampler/double")->Apply(lengths);
 BENCHMARK_TEMPLATE(resample, float)->Name("fourier_resampler/float")->Apply(lengths);
+
+}  // namespace bench_fourier_resampler

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+namespace bench_fractional_delay {
+
 namespace {
 
 /// Largest |H exp(i w d) - 1| in dB over all fractions of a sample (in fortieths), of the line's own response to a click.
@@ -70,3 +72,5 @@ BENCHMARK_TEMPLATE(delay_line, double, rosin::kaiser<32>)->Name("fractional_dela
 BENCHMARK_TEMPLATE(delay_line, double, rosin::kaiser<48>)->Name("fractional_delay/double/kaiser<48>");
 BENCHMARK_TEMPLATE(delay_line, double, rosin::kaiser<64>)->Name("fractional_delay/double/kaiser<64>");
 BENCHMARK_TEMPLATE(delay_line, double, rosin::kaiser<64, 90>)->Name("fractional_delay/double/kaiser<64,90>");
+
+}  // namespace bench_fractional_delay

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace bench_low_pass {
+
 namespace {
 
 constexpr double rate_Hz = 128e3;
@@ -49,3 +51,5 @@ BENCHMARK(low_pass)
     ->Args({10000, 30000})
     ->Args({8000, 12000})
     ->Unit(benchmark::kMillisecond);
+
+}  // namespace bench_low_pass

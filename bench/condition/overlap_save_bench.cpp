@@ -3,6 +3,8 @@
 
 #include <rosin/math/fft.hpp>
 
+namespace bench_overlap_save {
+
 using namespace overlap_save_cases;
 
 BENCHMARK_TEMPLATE(direct_sum, double)->Name("overlap_save/direct_sum/double")->Unit(benchmark::kMillisecond);
@@ -37,3 +39,5 @@ BENCHMARK_TEMPLATE(four_bare_ffts, double, rosin::eigen_fft<double>)
 BENCHMARK_TEMPLATE(four_bare_ffts, float, rosin::eigen_fft<float>)
     ->Name("overlap_save/four_bare_ffts/eigen/float")
     ->Unit(benchmark::kMillisecond);
+
+}  // namespace bench_overlap_save

@@ -3,6 +3,8 @@
 
 #include <rosin/adapt/fft_fftw.hpp>
 
+namespace bench_overlap_save_fftw {
+
 using namespace overlap_save_cases;
 
 BENCHMARK_TEMPLATE(convolve, double, rosin::fftw_fft<std::complex<double>>)
@@ -21,3 +23,5 @@ BENCHMARK_TEMPLATE(four_bare_ffts, double, rosin::fftw_fft<double>)
 BENCHMARK_TEMPLATE(four_bare_ffts, float, rosin::fftw_fft<float>)
     ->Name("overlap_save/four_bare_ffts/fftw/float")
     ->Unit(benchmark::kMillisecond);
+
+}  // namespace bench_overlap_save_fftw

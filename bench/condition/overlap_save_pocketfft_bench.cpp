@@ -3,6 +3,8 @@
 
 #include <rosin/adapt/fft_pocketfft.hpp>
 
+namespace bench_overlap_save_pocketfft {
+
 using namespace overlap_save_cases;
 
 BENCHMARK_TEMPLATE(convolve, double, rosin::pocketfft_fft<std::complex<double>>)
@@ -21,3 +23,5 @@ BENCHMARK_TEMPLATE(four_bare_ffts, double, rosin::pocketfft_fft<double>)
 BENCHMARK_TEMPLATE(four_bare_ffts, float, rosin::pocketfft_fft<float>)
     ->Name("overlap_save/four_bare_ffts/pocketfft/float")
     ->Unit(benchmark::kMillisecond);
+
+}  // namespace bench_overlap_save_pocketfft

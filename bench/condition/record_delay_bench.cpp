@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+namespace bench_record_delay {
+
 namespace {
 
 template <class T>
@@ -39,3 +41,5 @@ BENCHMARK_TEMPLATE(ten_seconds, float)
     ->Args({80, -100})
     ->Args({80, -140})
     ->Unit(benchmark::kMillisecond);
+
+}  // namespace bench_record_delay

@@ -13,6 +13,8 @@
 
 #include <benchmark/benchmark.h>
 
+namespace bench_pluck_diagnosis {
+
 namespace {
 
 constexpr double rate = 128e3, noise_N = 0.3e-3;
@@ -71,8 +73,8 @@ struct stroke {
   [[nodiscard]] rosin::contact_take take() const {
     rosin::contact_take t{"bow", force_N, velocity_m_s, motion.velocity_near_m_s, motion.velocity_far_m_s};
     t.near_N = end_N[0], t.far_N = end_N[1], t.rate_Hz = rate, t.rod_speed_m_s = speed_m_s, t.normal_force_N = normal_force_N;
-    t.delay_s = at.delay_s, t.stiffness_s2 = at.stiffness_s2, t.inverse_q = 1 / rig.string.loss.quality,
-    t.impedance_Ns_m = at.impedance_Ns_m, t.length_m = rig.string.length_m;
+    t.delay_s = at.delay_s, t.stiffness_s2 = at.stiffness_s2, t.loss = rig.string.loss, t.impedance_Ns_m = at.impedance_Ns_m,
+    t.length_m = rig.string.length_m;
     t.force_sd_N = noise_N, t.velocity_sd_m_s = 5 * noise_N, t.noise_N = {noise_N, noise_N}, t.edge_Hz = 0.45 * rate;
     return t;
   }
@@ -117,3 +119,5 @@ void diagnosis(benchmark::State& state) {
 
 BENCHMARK(calibration)->Unit(benchmark::kMillisecond);
 BENCHMARK(diagnosis)->Arg(0)->Arg(4)->Unit(benchmark::kMillisecond);
+
+}  // namespace bench_pluck_diagnosis

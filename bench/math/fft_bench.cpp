@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace bench_fft {
+
 namespace {
 
 using bins = std::vector<std::complex<double>>;
@@ -44,3 +46,5 @@ BENCHMARK(chirp_z)->Name("fft/512_times_prime/chirp_z")->Apply(primes);
 
 BENCHMARK_TEMPLATE(there_and_back, double, rosin::eigen_fft<double>)->Name("fft/eigen/double")->Apply(fft_cases::lengths);
 BENCHMARK_TEMPLATE(there_and_back, float, rosin::eigen_fft<float>)->Name("fft/eigen/float")->Apply(fft_cases::lengths);
+
+}  // namespace bench_fft

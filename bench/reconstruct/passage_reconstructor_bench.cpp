@@ -16,6 +16,8 @@
 #include <numeric>
 #include <vector>
 
+namespace bench_passage_reconstructor {
+
 namespace {
 
 constexpr double rate_Hz = 128e3;
@@ -118,3 +120,5 @@ BENCHMARK(inner_products<float>)->Name("streaming/float/inner_products/block")->
 BENCHMARK(passages<double>)->Name("streaming/double/passages/block")->Apply(blocks);
 BENCHMARK(eight_filters<double>)->Name("streaming/double/eight_filters/block")->Apply(blocks);
 BENCHMARK(inner_products<double>)->Name("streaming/double/inner_products/block")->Apply(blocks);
+
+}  // namespace bench_passage_reconstructor

@@ -5,6 +5,8 @@
 
 #include <stk/Bowed.h>
 
+namespace bench_stk {
+
 namespace {
 
 void stk_bowed(benchmark::State& state) {
@@ -20,3 +22,5 @@ void stk_bowed(benchmark::State& state) {
 }  // namespace
 
 BENCHMARK(stk_bowed)->Name("peer/stk::Bowed")->Arg(4)->Arg(16);
+
+}  // namespace bench_stk

@@ -8,6 +8,8 @@
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 
+namespace bench_travelling_string {
+
 namespace {
 
 const rosin::steady_rod rod{.speed_m_s = 0.1, .normal_force_N = 0.2, .start_s = 0, .rise_s = 0.01};
@@ -57,3 +59,5 @@ void modes_travelling(benchmark::State& state) {
 
 BENCHMARK(travelling)->Name("waves/stiff, torsion, travelling")->Arg(4)->Arg(16);
 BENCHMARK(modes_travelling)->Name("modes/stiff, torsion, travelling")->Arg(4)->Arg(16);
+
+}  // namespace bench_travelling_string

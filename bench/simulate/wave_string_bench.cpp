@@ -10,6 +10,8 @@
 #include <rosin/friction/velocity_curve.hpp>
 #include <rosin/friction/yield_curve_design.hpp>
 
+namespace bench_wave_string {
+
 namespace {
 
 constexpr double position = 0.12;
@@ -86,3 +88,5 @@ BENCHMARK(warm)->Name("waves/stiff, torsion, thermal")->Arg(4)->Arg(16);
 BENCHMARK(whole_take)->Name("waves/stiff, torsion, with the sensors' signals")->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond);
 BENCHMARK(modes_turning)->Name("modes/stiff, torsion")->Arg(4)->Arg(16);
 BENCHMARK(modes_warm)->Name("modes/stiff, torsion, thermal")->Arg(4)->Arg(16);
+
+}  // namespace bench_wave_string
