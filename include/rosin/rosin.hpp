@@ -27,8 +27,11 @@
 #include <rosin/math/fft_policy.hpp>
 #include <rosin/math/lane_fft.hpp>
 #include <rosin/math/lanes.hpp>
+#include <rosin/math/levenberg_marquardt.hpp>
 #include <rosin/math/median.hpp>
 #include <rosin/math/plain_complex.hpp>
+#include <rosin/math/reweighted_regression.hpp>
+#include <rosin/math/robust_loss.hpp>
 #include <rosin/math/spectrum_line.hpp>
 
 #include <rosin/acquire/checks.hpp>

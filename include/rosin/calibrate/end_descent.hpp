@@ -20,7 +20,7 @@ public:
   struct state {
     std::vector<std::size_t> ends;
     Eigen::VectorXd v;
-    end_equations now;
+    normal_equations<> now;
   };
 
   template <class = void>
@@ -35,7 +35,7 @@ public:
 
   [[nodiscard]] const end_model& model() const { return model_; }
   [[nodiscard]] const Eigen::VectorXd& value() const { return v_; }
-  [[nodiscard]] const end_equations& now() const { return now_; }
+  [[nodiscard]] const normal_equations<>& now() const { return now_; }
   [[nodiscard]] const end_problem& problem() const { return *problem_; }
   [[nodiscard]] const band& limits() const { return limits_; }
   [[nodiscard]] const std::vector<double>& begins_s() const { return begin_s_; }
@@ -85,27 +85,18 @@ public:
   /// Moves a mode to the other end.
   void swap_end(std::size_t mode) { model_.mode_end[mode] = 1 - model_.mode_end[mode]; }
 
-  /// Levenberg and Marquardt.
-  template <class Real = double>
+  template <class = void>
   void settle(int most) {
-    double damping = 1e-4;
-    now_ = equations(v_);
-    for (int i = 0; i < most; ++i, ++iterations_) {
-      const Eigen::VectorX<Real> scale = now_.hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-      Eigen::MatrixX<Real> scaled = scale.asDiagonal() * now_.hessian * scale.asDiagonal();
-      scaled.diagonal().array() += damping;
-      const Eigen::VectorX<Real> step = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * now_.gradient);
-      const Eigen::VectorX<Real> tried = v_ + step;
-      const bool sane = step.allFinite() && plausible(tried);
-      end_equations next = sane ? equations(tried) : now_;
-      converged_ = sane && std::abs(now_.cost - next.cost) < 0.02 + 1e-6 * now_.cost;
-      if (sane && std::isfinite(next.cost) && next.cost <= now_.cost) {
-        v_ = tried, now_ = std::move(next), damping = std::max(1e-10, damping / 8);
-      } else if ((damping *= 20) > 1e8) {
-        return;
-      }
-      if (converged_) return;
-    }
+    auto found = levenberg_marquardt(*this, v_,
+                                     {.first = 1e-4,
+                                      .less = 1.0 / 8,
+                                      .more = 20,
+                                      .floor = 1e-10,
+                                      .iterations = most,
+                                      .enough = 0.02,
+                                      .enough_relative = 1e-6});
+    v_ = std::move(found.at), now_ = std::move(found.equations);
+    iterations_ += found.iterations, converged_ = found.converged();
   }
 
   /// What the residual's power at the partials is times the noise's; 1: nothing is left.
@@ -136,6 +127,33 @@ public:
     if (p == layout::internal_loss) return {0, 3e-7};
     if (p == layout::inharmonicity && guess_.inharmonicity > 0) return {guess_.inharmonicity, guess_.inharmonicity};
     return model_.layout.prior(p, takes_, guess_);
+  }
+
+  /// A problem of least squares (math/levenberg_marquardt.hpp) with what is known beforehand, and the points that make sense.
+  template <class = void>
+  [[nodiscard]] normal_equations<> linearise(const Eigen::VectorXd& v) const {
+    normal_equations<> eq = problem_->linearise(model_, v);
+    for (Eigen::Index p = 0; p < model_.size(); ++p) {
+      if (!model_.is_free(p)) eq.hessian(p, p) = 1;
+      const auto [known, sd] = prior(p);
+      if (sd <= 0 || !model_.is_free(p)) continue;
+      eq.hessian(p, p) += 1 / (sd * sd);
+      eq.gradient[p] += (known - v[p]) / (sd * sd);
+      eq.cost += (known - v[p]) * (known - v[p]) / (sd * sd);
+    }
+    return eq;
+  }
+
+  template <class = void>
+  [[nodiscard]] bool plausible(const Eigen::VectorXd& v) const {
+    const auto n = model_.layout.size();
+    bool ok = model_.layout.plausible(v.head(n), start_, limits_.pass_Hz);
+    for (std::size_t i = 0; i < model_.mode_end.size(); ++i) {
+      const admittance_mode m = model_.mode(v, i);
+      ok = ok && m.frequency_Hz > 20 && m.frequency_Hz < 1.3 * limits_.pass_Hz && m.q > 0.3 && m.q < 5000 &&
+           m.per_mass_per_s > 1e-7 && m.per_mass_per_s < 1e6;
+    }
+    return ok;
   }
 
 private:
@@ -175,39 +193,13 @@ private:
     problem_->set_noise(noise_);
   }
 
-  template <class = void>
-  [[nodiscard]] end_equations equations(const Eigen::VectorXd& v) const {
-    end_equations eq = problem_->linearise(model_, v);
-    for (Eigen::Index p = 0; p < model_.size(); ++p) {
-      if (!model_.is_free(p)) eq.hessian(p, p) = 1;
-      const auto [known, sd] = prior(p);
-      if (sd <= 0 || !model_.is_free(p)) continue;
-      eq.hessian(p, p) += 1 / (sd * sd);
-      eq.gradient[p] += (known - v[p]) / (sd * sd);
-      eq.cost += (known - v[p]) * (known - v[p]) / (sd * sd);
-    }
-    return eq;
-  }
-
-  template <class = void>
-  [[nodiscard]] bool plausible(const Eigen::VectorXd& v) const {
-    const auto n = model_.layout.size();
-    bool ok = model_.layout.plausible(v.head(n), start_, limits_.pass_Hz);
-    for (std::size_t i = 0; i < model_.mode_end.size(); ++i) {
-      const admittance_mode m = model_.mode(v, i);
-      ok = ok && m.frequency_Hz > 20 && m.frequency_Hz < 1.3 * limits_.pass_Hz && m.q > 0.3 && m.q < 5000 &&
-           m.per_mass_per_s > 1e-7 && m.per_mass_per_s < 1e6;
-    }
-    return ok;
-  }
-
   const std::vector<pluck_take>& takes_;
   pluck_guess guess_;
   end_model model_;
   band limits_;
   Eigen::VectorXd v_, start_;
   std::vector<double> begin_s_;
-  end_equations now_;
+  normal_equations<> now_;
   std::optional<end_problem> problem_;
   std::array<double, 2> noise_{1e-2, 1e-2};
   int iterations_ = 0;

@@ -15,6 +15,7 @@
 #include <rosin/calibrate/damped_spectrum.hpp>
 #include <rosin/calibrate/moving_string.hpp>
 #include <rosin/calibrate/pluck_layout.hpp>
+#include <rosin/math/levenberg_marquardt.hpp>
 #include <rosin/propagate/termination.hpp>
 
 #include <Eigen/Dense>
@@ -70,13 +71,6 @@ struct end_model {
   }
 };
 
-/// Normal equations of an end_problem.
-struct end_equations {
-  Eigen::MatrixXd hessian;  ///< of the data alone
-  Eigen::VectorXd gradient;
-  double cost = 0;
-};
-
 class end_problem {
 public:
   using complex = std::complex<double>;
@@ -115,9 +109,10 @@ public:
   template <class Real = double>
   [[nodiscard]] rows at(const end_model& m, const Eigen::VectorXd& v, std::size_t take, std::size_t channel,
                         bool for_search = false) const;
+  /// Of the data alone.
   template <class Real = double>
-  [[nodiscard]] end_equations linearise(const end_model& m, const Eigen::VectorXd& v) const {
-    end_equations eq{Eigen::MatrixX<Real>::Zero(m.size(), m.size()), Eigen::VectorX<Real>::Zero(m.size()), 0};
+  [[nodiscard]] normal_equations<> linearise(const end_model& m, const Eigen::VectorXd& v) const {
+    normal_equations<> eq = normal_equations<Real>::zero(m.size());
     for (std::size_t t = 0; t < takes(); ++t)
       for (std::size_t c = 0; c < 2; ++c) {
         const rows r = at(m, v, t, c);

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/core/instantiate.hpp>
+#include <rosin/math/levenberg_marquardt.hpp>
 
 #include <Eigen/Dense>
 
@@ -20,6 +21,7 @@
 #include <complex>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace rosin {
@@ -64,12 +66,6 @@ namespace detail {
 using complex_span = std::span<const std::complex<double>>;
 inline constexpr double full_turn = 6.283185307179586476925;
 
-struct line_normals {
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd gradient;
-  double residual = 0;
-};
-
 inline std::complex<double> line_rotation(const line_model& m, double t) {
   return std::polar(1.0, full_turn * m.centre_Hz * m.glide.relative * m.glide.path_s(t));
 }
@@ -93,34 +89,36 @@ inline std::complex<double> line_row(const line_model& m, double t, bool glide_f
   return sum;
 }
 
-template <class Real = double>
-line_normals line_normals_of(complex_span z, double rate_Hz, const line_model& m, bool glide_free) {
-  const auto n = static_cast<Eigen::Index>(4 * m.parts.size() + (glide_free ? 1 : 0));
-  line_normals normals{Eigen::MatrixX<Real>::Zero(n, n), Eigen::VectorX<Real>::Zero(n)};
-  Eigen::VectorX<std::complex<Real>> row(n);
-  for (std::size_t j = 0; j < z.size(); ++j) {
-    const std::complex<double> r = z[j] - line_row(m, static_cast<double>(j) / rate_Hz, glide_free, row);
-    for (Eigen::Index a = 0; a < n; ++a) {
-      normals.gradient[a] += row[a].real() * r.real() + row[a].imag() * r.imag();
-      for (Eigen::Index b = 0; b <= a; ++b) normals.matrix(a, b) += row[a].real() * row[b].real() + row[a].imag() * row[b].imag();
-    }
-    normals.residual += std::norm(r);
-  }
-  normals.matrix.triangularView<Eigen::StrictlyUpper>() = normals.matrix.transpose();
-  return normals;
-}
+/// Derivatives by Re c, Im c, decay and detuning of each part in turn, then by the glide if it is free.
+struct line_descent {
+  complex_span z;
+  double rate_Hz = 1;
+  bool glide_free = false;
 
-inline line_model line_moved(line_model m, const Eigen::VectorXd& by, bool glide_free) {
-  Eigen::Index at = 0;
-  for (damped_part& p : m.parts) {
-    p.amplitude += std::complex<double>{by[at], by[at + 1]};
-    p.decay_per_s += by[at + 2];
-    p.detuning_rad_s += by[at + 3];
-    at += 4;
+  template <class Real = double>
+  [[nodiscard]] normal_equations<> linearise(const line_model& m) const {
+    const auto n = static_cast<Eigen::Index>(4 * m.parts.size() + (glide_free ? 1 : 0));
+    auto equations = normal_equations<Real>::zero(n);
+    Eigen::VectorX<std::complex<Real>> row(n);
+    for (std::size_t j = 0; j < z.size(); ++j) {
+      const std::complex<double> r = z[j] - line_row(m, static_cast<double>(j) / rate_Hz, glide_free, row);
+      equations.add(row, r);
+    }
+    equations.mirror();
+    return equations;
   }
-  if (glide_free) m.glide.relative += by[at];
-  return m;
-}
+  [[nodiscard]] line_model moved(line_model m, const Eigen::VectorXd& by) const {
+    Eigen::Index at = 0;
+    for (damped_part& p : m.parts) {
+      p.amplitude += std::complex<double>{by[at], by[at + 1]};
+      p.decay_per_s += by[at + 2];
+      p.detuning_rad_s += by[at + 3];
+      at += 4;
+    }
+    if (glide_free) m.glide.relative += by[at];
+    return m;
+  }
+};
 
 }  // namespace detail
 
@@ -150,24 +148,9 @@ template <class Real = double>
 line_fit fit_line(std::span<const std::complex<double>> z, double rate_Hz, line_model start, bool glide_free = false,
                   int iterations = 30) {
   solve_amplitudes(z, rate_Hz, start);
-  auto normals = detail::line_normals_of(z, rate_Hz, start, glide_free);
-  double damping = 1e-3;
-  for (int i = 0; i < iterations && damping < 1e8; ++i) {
-    Eigen::MatrixX<Real> damped = normals.matrix;
-    damped.diagonal() *= 1 + damping;
-    const line_model next = detail::line_moved(start, damped.ldlt().solve(normals.gradient), glide_free);
-    const auto there = detail::line_normals_of(z, rate_Hz, next, glide_free);
-    if (there.residual < normals.residual) {
-      const bool done = normals.residual - there.residual < 1e-9 * normals.residual;
-      start = next;
-      normals = there;
-      damping = std::max(damping / 8, 1e-12);
-      if (done) break;
-    } else {
-      damping *= 6;
-    }
-  }
-  return {start, normals.matrix, normals.residual, glide_free};
+  auto found = levenberg_marquardt(detail::line_descent{z, rate_Hz, glide_free}, std::move(start),
+                                   {.less = 1.0 / 8, .more = 6, .iterations = iterations, .enough_relative = 1e-9});
+  return {std::move(found.at), std::move(found.equations.hessian), found.cost, glide_free};
 }
 ROSIN_INSTANTIATE(line_fit fit_line(std::span<const std::complex<double>>, double, line_model, bool, int))
 

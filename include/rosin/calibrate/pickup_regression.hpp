@@ -15,6 +15,7 @@
 
 #include <rosin/core/instantiate.hpp>
 #include <rosin/math/median.hpp>
+#include <rosin/math/robust_loss.hpp>
 
 #include <Eigen/Dense>
 
@@ -50,25 +51,20 @@ Eigen::VectorXd spread_of(const robust_data& d, double scatter) {
   return (d.variance.array() + (scatter * d.shape.array()).square()).sqrt();
 }
 
-/// Where a residual stops counting in full (bend) and at all (cut), in standard deviations.
+/// Huber's loss, and where a residual stops counting at all, in standard deviations.
 struct huber_limits {
-  double bend = 1.5, cut = 5;
+  huber_loss<> loss{1.5};
+  double cut = 5;
 
-  [[nodiscard]] double weight(double u) const { return std::abs(u) <= bend ? 1.0 : std::abs(u) > cut ? 0.0 : bend / std::abs(u); }
-  /// E min(z^2, bend^2) of a normal z.
-  [[nodiscard]] double usual_square() const {
-    const double inside = std::erf(bend / std::numbers::sqrt2),
-                 density = std::exp(-bend * bend / 2) / std::sqrt(2 * std::numbers::pi);
-    return inside - 2 * bend * density + bend * bend * (1 - inside);
-  }
+  [[nodiscard]] double weight(double u) const { return std::abs(u) > cut ? 0.0 : loss.weight(u); }
 };
 
 /// The scatter at which the bounded squares of residual / sigma add up to what a normal distribution would give.
 template <class = void>
-double scatter_of(const robust_data& d, const Eigen::VectorXd& residual, Eigen::Index parameters, const huber_limits& limits) {
-  const double wanted = limits.usual_square() * std::max(static_cast<double>(d.y.size() - parameters), 0.5);
+double scatter_of(const robust_data& d, const Eigen::VectorXd& residual, Eigen::Index parameters, const huber_loss<>& loss) {
+  const double wanted = loss.usual_square() * std::max(static_cast<double>(d.y.size() - parameters), 0.5);
   const auto excess = [&](double s) {
-    return residual.cwiseQuotient(spread_of(d, s)).cwiseAbs2().cwiseMin(limits.bend * limits.bend).sum() - wanted;
+    return residual.cwiseQuotient(spread_of(d, s)).cwiseAbs2().cwiseMin(loss.bend * loss.bend).sum() - wanted;
   };
   if (!(excess(0) > 0)) return 0;
   double low = 0, high = 10 * residual.cwiseAbs().cwiseQuotient(d.shape).maxCoeff();
@@ -84,7 +80,7 @@ double sandwich(const Eigen::VectorXd& u, Eigen::Index parameters, const huber_l
     if (limits.weight(v) == 0) continue;
     const double psi = limits.weight(v) * v;
     psi2 += psi * psi;
-    slope += std::abs(v) <= limits.bend ? 1 : 0;
+    slope += limits.loss.slope(v);
     if (n > 0) product += psi * before;
     before = psi;
     n += 1;
@@ -108,12 +104,12 @@ template <class Model>
   fit.value = start;
   Eigen::VectorXd prediction(n), sigma(n), u(n);
   Eigen::MatrixXd jacobian(n, p);
-  detail::huber_limits limits{n - p < 8 ? 3.0 : 1.5, std::numeric_limits<double>::infinity()};
+  detail::huber_limits limits{{n - p < 8 ? 3.0 : 1.5}, std::numeric_limits<double>::infinity()};
   for (int i = 0; i < 50; ++i) {
     if (i == 15 && n - p >= 8) limits.cut = 5;
     model(fit.value, prediction, jacobian);
     const Eigen::VectorXd residual = data.y - prediction;
-    fit.scatter = detail::scatter_of(data, residual, p, limits);
+    fit.scatter = detail::scatter_of(data, residual, p, limits.loss);
     sigma = detail::spread_of(data, fit.scatter);
     u = residual.cwiseQuotient(sigma);
     fit.weight = u.unaryExpr([&](double v) { return limits.weight(v); });
@@ -134,10 +130,7 @@ template <class Model>
   fit.covariance =
       detail::sandwich(u, p, limits) * (size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal());
   fit.used = static_cast<int>((fit.weight.array() > 0).count());
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double a = std::min(std::abs(u[i]), limits.cut);
-    fit.cost += std::log(sigma[i]) + (a <= limits.bend ? a * a / 2 : limits.bend * (a - limits.bend / 2));
-  }
+  for (Eigen::Index i = 0; i < n; ++i) fit.cost += std::log(sigma[i]) + limits.loss.rho(std::min(std::abs(u[i]), limits.cut));
   return fit;
 }
 

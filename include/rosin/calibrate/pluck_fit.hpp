@@ -58,34 +58,28 @@ inline constexpr std::array<stage, 4> approach{{{4, 5}, {6, 12}, {12, 30}, {24, 
 /// The whole record; less of it where the model does not hold for so long.
 inline constexpr std::array<double, 3> horizon_periods{1e9, 30, 8};
 
-/// One Levenberg-Marquardt descent at fixed weights. Returns whether it settled.
+/// Plucks as a fit may take them: not far from where it began.
+template <class Problem, class Layout>
+struct pluck_descent {
+  const Problem& problem;
+  const Layout& layout;
+  const Eigen::VectorXd& start;
+
+  [[nodiscard]] pluck_equations linearise(const Eigen::VectorXd& value) const { return problem.linearise(value); }
+  [[nodiscard]] bool plausible(const Eigen::VectorXd& value) const {
+    return layout.plausible(value, start, problem.limits().stop_Hz);
+  }
+};
+
+/// One descent at fixed weights. Returns whether it settled.
 template <class Problem, class Layout>
 bool descend(const Problem& problem, const Layout& layout, const Eigen::VectorXd& start, Eigen::VectorXd& value, int most,
              double enough, int& iterations) {
-  double damping = 1e-6;
-  normal_equations now = problem.linearise(value);
-  for (int i = 0; i < most; ++i, ++iterations) {
-    const Eigen::VectorXd scale = now.hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    Eigen::MatrixXd scaled = scale.asDiagonal() * now.hessian * scale.asDiagonal();
-    scaled.diagonal().array() += damping;
-    const Eigen::VectorXd step = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * now.gradient);
-    if (!step.allFinite()) return false;
-    const Eigen::VectorXd tried = value + step;
-    const bool sane = layout.plausible(tried, start, problem.limits().stop_Hz);
-    normal_equations next = sane ? problem.linearise(tried) : now;
-    const double gain = sane ? now.cost - next.cost : -1.0;
-    if (std::isfinite(next.cost) && gain >= 0) {
-      value = tried;
-      now = std::move(next);
-      damping = std::max(1e-12, damping / 10);
-      if (gain <= enough) return true;
-    } else {
-      if (sane && step.dot(now.gradient) <= enough) return true;  // no better to be had within rounding
-      damping = std::max(1e-6, damping * 30);
-      if (damping > 1e8) return false;
-    }
-  }
-  return false;
+  auto found = levenberg_marquardt(
+      pluck_descent<Problem, Layout>{problem, layout, start}, value,
+      {.first = 1e-6, .more = 30, .restart = 1e-6, .iterations = most, .enough = enough, .enough_relative = 0});
+  value = std::move(found.at), iterations += found.iterations;
+  return found.converged();
 }
 
 /// Names of the parameters that the data leave open: those in the directions in which the scaled Hessian vanishes.
@@ -132,7 +126,7 @@ void finish(const std::vector<pluck_take>& takes, const pluck_guess& guess, cons
   result.noise_N = found.noise;
   result.misfit = found.misfit, result.more_than_noise = found.inflation() != 1;
   result.residual_ratio = found.residual_ratio;
-  const normal_equations end = problem.linearise(result.value);
+  const pluck_equations end = problem.linearise(result.value);
   const Eigen::MatrixX<Real> inverse = invert_free(result.layout, end.hessian);
   result.covariance = inverse * (end.prior + found.inflation() * problem.scatter(result.value)) * inverse;
   result.sd = result.covariance.diagonal().cwiseMax(0).cwiseSqrt();

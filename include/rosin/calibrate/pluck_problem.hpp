@@ -11,6 +11,7 @@
 
 #include <rosin/calibrate/band_kernels.hpp>
 #include <rosin/calibrate/pluck_start.hpp>
+#include <rosin/math/levenberg_marquardt.hpp>
 
 #include <concepts>
 
@@ -51,11 +52,9 @@ struct plain_plucks : pluck_layout {
   }
 };
 
-/// hessian step = gradient; `prior` is the part of the Hessian that does not come from data.
-struct normal_equations {
-  Eigen::MatrixXd hessian, prior;
-  Eigen::VectorXd gradient;
-  double cost = 0;
+/// `prior` is the part of the Hessian that does not come from data.
+struct pluck_equations : normal_equations<> {
+  Eigen::MatrixXd prior;
 };
 
 /// What the residual says of the model.
@@ -121,7 +120,7 @@ public:
                                                              const std::vector<damped_line>& at) const;
   void set_noise(std::array<double, 2> noise) { noise_ = noise; }
 
-  [[nodiscard]] normal_equations linearise(const Eigen::VectorXd& value) const;
+  [[nodiscard]] pluck_equations linearise(const Eigen::VectorXd& value) const;
   /// Covariance of the gradient's data part for white noise of the assumed size: less than the Hessian where the band falls off.
   [[nodiscard]] Eigen::MatrixXd scatter(const Eigen::VectorXd& value) const;
   [[nodiscard]] assessment assess(const Eigen::VectorXd& value) const;
@@ -211,9 +210,9 @@ void line_problem<Model>::each_stretch(const Eigen::VectorXd& v, Visit&& visit) 
 }
 
 template <LineModel Model>
-normal_equations line_problem<Model>::linearise(const Eigen::VectorXd& v) const {
+pluck_equations line_problem<Model>::linearise(const Eigen::VectorXd& v) const {
   const Eigen::Index P = model_.size();
-  normal_equations eq{Eigen::MatrixXd::Zero(P, P), Eigen::MatrixXd::Zero(P, P), Eigen::VectorXd::Zero(P)};
+  pluck_equations eq{normal_equations<>::zero(P), Eigen::MatrixXd::Zero(P, P)};
   each_stretch(v, [&](std::size_t t, const stretch& s, const auto& now, const Eigen::MatrixXd& gram, const auto& all) {
     std::vector<Eigen::Index> rows;  // of parameters that this take tells of; the others' are zero
     for (Eigen::Index p = 0; p < P; ++p)

@@ -10,6 +10,7 @@
 
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/wide_record.hpp>
+#include <rosin/math/reweighted_regression.hpp>
 
 namespace rosin {
 
@@ -24,21 +25,15 @@ template <class = void>
                                    std::size_t begin, std::size_t end, double speed_m_s) {
   Eigen::Vector2d value(0, 0);
   double loose = 0;
-  for (const double scale : {1.0, 0.5, 0.25, 0.12, 0.12, 0.06, 0.05, 0.05, 0.05}) {
-    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d side = Eigen::Vector2d::Zero();
-    const double s2 = std::pow(scale * speed_m_s, 2);
-    loose = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector2d x(1, compliance[i]);
-      const double r = relative_m_s[i] + x.dot(value), near = s2 / (s2 + r * r), weight = scale > 0.12 ? near : near * near;
-      normal += weight * x * x.transpose();
-      side -= weight * relative_m_s[i] * x;
-      loose += 1 - near;
-    }
-    normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
-    value = normal.ldlt().solve(side);
-  }
+  const auto row = [&](Eigen::Index i) {
+    const auto k = static_cast<std::size_t>(i);
+    return regression_row<double, 2>{{1, compliance[k]}, -relative_m_s[k]};
+  };
+  const auto pass = [&](const auto& loss, double scale) {
+    return reweighted_pass(loss, scale * speed_m_s, static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end), row, value);
+  };
+  for (const double scale : {1.0, 0.5, 0.25}) pass(cauchy_loss<>{}, scale);
+  for (const double scale : {0.12, 0.12, 0.06, 0.05, 0.05, 0.05}) loose = 2 * pass(geman_mcclure_loss<>{}, scale);
   return loose;
 }
 

@@ -15,6 +15,7 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_poles.hpp>
 #include <rosin/diagnose/pickup_table.hpp>
+#include <rosin/math/levenberg_marquardt.hpp>
 
 #include <array>
 #include <utility>
@@ -74,7 +75,7 @@ struct fitted_law {
 
 namespace detail {
 
-inline constexpr huber_limits law_limits{1.5, 1e300};
+inline constexpr huber_loss<> law_loss{1.5};
 
 /// Frequencies, then decays.
 inline Eigen::VectorXd predicted_lines(const line_table& table, const pickup_law& law) {
@@ -105,10 +106,7 @@ std::array<robust_data, 2> left_by_law(const line_table& table, const Eigen::Vec
 /// ln L but for a constant: squares up to the bend, straight beyond.
 inline double robust_log_likelihood(const Eigen::VectorXd& left, const Eigen::VectorXd& sigma) {
   double sum = 0;
-  for (Eigen::Index i = 0; i < left.size(); ++i) {
-    const double u = std::abs(left[i]) / sigma[i];
-    sum -= std::log(sigma[i]) + (u <= law_limits.bend ? u * u / 2 : law_limits.bend * (u - law_limits.bend / 2));
-  }
+  for (Eigen::Index i = 0; i < left.size(); ++i) sum -= std::log(sigma[i]) + law_loss.rho(left[i] / sigma[i]);
   return sum;
 }
 
@@ -118,28 +116,39 @@ public:
       : table_{table}, parameters_{parameters}, proportion_{in_proportion}, rows_{static_cast<Eigen::Index>(table.lines.size())} {
   }
 
+  /// A law, and what it leaves of the table.
+  struct view {
+    pickup_law law;
+    Eigen::VectorXd residual, weight;
+    double scatter_Hz = 0, scatter_decay = 0, log_likelihood = 0;
+  };
+  /// In the units of squares: 2 (-ln L).
+  [[nodiscard]] double cost(const view& v) const { return -2 * v.log_likelihood; }
   template <class Real = double>
-  [[nodiscard]] fitted_law fit(pickup_law start) const {
-    fitted_law best;
-    best.law = start, best.parameters = parameters_, best.in_proportion = proportion_;
-    auto state = look(start);
-    double damping = 1e-2;
-    for (int i = 0; i < 60 && damping < 1e8; ++i) {
-      const Eigen::MatrixX<Real> j = jacobian(best.law).array().colwise() * state.weight.cwiseSqrt().array();
-      const Eigen::VectorX<Real> r = state.residual.cwiseProduct(state.weight.cwiseSqrt());
-      Eigen::MatrixX<Real> normal = j.transpose() * j;
-      normal.diagonal() += damping * normal.diagonal() + Eigen::VectorX<Real>::Constant(normal.rows(), 1e-300);
-      const pickup_law next = moved(best.law, normal.ldlt().solve(j.transpose() * r));
-      auto there = look(next);
-      if (!(there.log_likelihood > state.log_likelihood)) {
-        damping *= 5;
-        continue;
-      }
-      const bool done = there.log_likelihood - state.log_likelihood < 1e-5;
-      best.law = next, state = there, damping = std::max(damping / 6, 1e-10);
-      if (done) break;
+  [[nodiscard]] normal_equations<> linearise(const view& v) const {
+    const Eigen::VectorX<Real> root = v.weight.cwiseSqrt();
+    const Eigen::MatrixX<Real> j = jacobian(v.law).array().colwise() * root.array();
+    return {j.transpose() * j, j.transpose() * v.residual.cwiseProduct(root), cost(v)};
+  }
+  [[nodiscard]] view moved(const view& v, const Eigen::VectorXd& by) const {
+    pickup_law l = v.law;
+    for (std::size_t k = 0; k < parameters_.size(); ++k) {
+      const auto& p = parameters_[k];
+      double& x = l.*p.member;
+      const double step = by[static_cast<Eigen::Index>(k)];
+      x = std::clamp(p.logarithmic ? x * std::exp(std::clamp(step, -1.0, 1.0)) : x + step, p.low, p.high);
     }
-    finish(best, state);
+    return look(l);
+  }
+
+  template <class = void>
+  [[nodiscard]] fitted_law fit(const pickup_law& start) const {
+    const auto found = levenberg_marquardt(
+        *this, look(start),
+        {.first = 1e-2, .less = 1.0 / 6, .more = 5, .floor = 1e-10, .iterations = 60, .enough = 2e-5, .enough_relative = 0});
+    fitted_law best;
+    best.law = found.at.law, best.parameters = parameters_, best.in_proportion = proportion_;
+    finish(best, found.at);
     return best;
   }
 
@@ -154,35 +163,22 @@ public:
   [[nodiscard]] Eigen::VectorXd predicted(const pickup_law& l) const { return predicted_lines(table_, l); }
 
 private:
-  struct view {
-    Eigen::VectorXd residual, weight;
-    double scatter_Hz = 0, scatter_decay = 0, log_likelihood = 0;
-  };
   template <class Real = double>
   [[nodiscard]] view look(const pickup_law& l) const {
     const auto left = left_by_law(table_, predicted(l), proportion_);
-    view v{Eigen::VectorX<Real>(2 * rows_), Eigen::VectorX<Real>(2 * rows_)};
+    view v{l, Eigen::VectorX<Real>(2 * rows_), Eigen::VectorX<Real>(2 * rows_)};
     const auto half = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(parameters_.size()) / 2);
     for (Eigen::Index b = 0; b < 2; ++b) {
       const auto& d = left[static_cast<std::size_t>(b)];
       double& scatter = b == 0 ? v.scatter_Hz : v.scatter_decay;
-      scatter = scatter_of(d, d.y, half, law_limits);
+      scatter = scatter_of(d, d.y, half, law_loss);
       const Eigen::VectorX<Real> sigma = spread_of(d, scatter);
       v.residual.segment(b * rows_, rows_) = d.y;
       for (Eigen::Index i = 0; i < rows_; ++i)
-        v.weight[b * rows_ + i] = law_limits.weight(std::abs(d.y[i]) / sigma[i]) / (sigma[i] * sigma[i]);
+        v.weight[b * rows_ + i] = law_loss.weight(d.y[i] / sigma[i]) / (sigma[i] * sigma[i]);
       v.log_likelihood += robust_log_likelihood(d.y, sigma);
     }
     return v;
-  }
-  [[nodiscard]] pickup_law moved(pickup_law l, const Eigen::VectorXd& by) const {
-    for (std::size_t k = 0; k < parameters_.size(); ++k) {
-      const auto& p = parameters_[k];
-      double& x = l.*p.member;
-      const double step = by[static_cast<Eigen::Index>(k)];
-      x = std::clamp(p.logarithmic ? x * std::exp(std::clamp(step, -1.0, 1.0)) : x + step, p.low, p.high);
-    }
-    return l;
   }
   template <class Real = double>
   [[nodiscard]] Eigen::MatrixXd jacobian(const pickup_law& l) const {
@@ -236,7 +232,7 @@ template <class Real = double>
   y.head(n) *= std::exp(median_of(off));
   double sum = 0;
   for (const auto& d : detail::left_by_law(table, y, fit.in_proportion))
-    sum += detail::robust_log_likelihood(d.y, detail::spread_of(d, detail::scatter_of(d, d.y, 1, detail::law_limits)));
+    sum += detail::robust_log_likelihood(d.y, detail::spread_of(d, detail::scatter_of(d, d.y, 1, detail::law_loss)));
   return sum;
 }
 ROSIN_INSTANTIATE(double predicted_log_likelihood(const line_table&, const fitted_law&))

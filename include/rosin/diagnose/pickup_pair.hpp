@@ -10,6 +10,7 @@
 
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_ringing.hpp>
+#include <rosin/math/levenberg_marquardt.hpp>
 
 #include <array>
 #include <complex>
@@ -52,79 +53,59 @@ double sd_at(const Gain& gain, likelihood_peak top, double h, double widest) {
   return curve < 0 ? 1 / std::sqrt(-curve) : std::numeric_limits<double>::infinity();
 }
 
-struct pair_normals {
-  Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
-  double residual = 0;
+/// Pairs of lines to a track; the shift is `relative` times the frequency of the first line.
+struct pair_descent {
+  complex_span z;
+  double rate_Hz = 1, centre_rad_s = 0, relative = 0;
+
+  template <class = void>
+  [[nodiscard]] normal_equations<double, 6> linearise(const line_pair& p) const {
+    constexpr std::complex<double> i{0, 1};
+    auto n = normal_equations<double, 6>::zero();
+    const auto step = std::exp(std::complex<double>{-p.decay_per_s, p.detuning_rad_s} / rate_Hz),
+               other = std::polar(1.0, p.shift_rad_s / rate_Hz);
+    std::complex<double> e = 1, turned = 1;
+    for (std::size_t j = 0; j < z.size(); ++j, e *= step, turned *= other) {
+      const double t = static_cast<double>(j) / rate_Hz;
+      const auto a = p.amplitude[0] * e, b = p.amplitude[1] * e * turned;
+      const Eigen::Vector<std::complex<double>, 6> row{
+          {e, i * e, e * turned, i * e * turned, -t * (a + b), i * t * (a + (1 + relative) * b)}};
+      n.add(row, z[j] - a - b);
+    }
+    n.mirror();
+    return n;
+  }
+  template <class = void>
+  [[nodiscard]] line_pair moved(line_pair p, const Eigen::Vector<double, 6>& by) const {
+    p.amplitude[0] += std::complex{by[0], by[1]};
+    p.amplitude[1] += std::complex{by[2], by[3]};
+    return at(p, p.decay_per_s + by[4], p.detuning_rad_s + by[5]);
+  }
+  [[nodiscard]] line_pair at(line_pair p, double decay_per_s, double detuning_rad_s) const {
+    p.decay_per_s = decay_per_s, p.detuning_rad_s = detuning_rad_s;
+    p.shift_rad_s = relative * (centre_rad_s + detuning_rad_s);
+    return p;
+  }
+  /// The amplitudes by themselves.
+  template <class Real = double>
+  void set_amplitudes(line_pair& p) const {
+    p.amplitude = {};
+    const auto n = linearise(p);
+    const Eigen::Vector4<Real> c = n.hessian.template topLeftCorner<4, 4>().ldlt().solve(n.gradient.template head<4>());
+    p.amplitude = {std::complex{c[0], c[1]}, std::complex{c[2], c[3]}};
+  }
 };
 
-/// `relative`: the shift grows with the frequency of the first line by so much.
+/// From decay and detuning on.
 template <class = void>
-pair_normals normals_of(complex_span z, double rate_Hz, const line_pair& p, double relative) {
-  constexpr std::complex<double> i{0, 1};
-  pair_normals n;
-  const auto step = std::exp(std::complex<double>{-p.decay_per_s, p.detuning_rad_s} / rate_Hz),
-             other = std::polar(1.0, p.shift_rad_s / rate_Hz);
-  std::complex<double> e = 1, turned = 1;
-  std::array<std::complex<double>, 6> row;
-  for (std::size_t j = 0; j < z.size(); ++j, e *= step, turned *= other) {
-    const double t = static_cast<double>(j) / rate_Hz;
-    const auto a = p.amplitude[0] * e, b = p.amplitude[1] * e * turned;
-    row = {e, i * e, e * turned, i * e * turned, -t * (a + b), i * t * (a + (1 + relative) * b)};
-    const auto r = z[j] - a - b;
-    for (int u = 0; u < 6; ++u) {
-      const auto su = static_cast<std::size_t>(u);
-      n.gradient[u] += row[su].real() * r.real() + row[su].imag() * r.imag();
-      for (int v = 0; v <= u; ++v) {
-        const auto sv = static_cast<std::size_t>(v);
-        n.matrix(u, v) += row[su].real() * row[sv].real() + row[su].imag() * row[sv].imag();
-      }
-    }
-    n.residual += std::norm(r);
-  }
-  n.matrix.triangularView<Eigen::StrictlyUpper>() = n.matrix.transpose();
-  return n;
-}
-
-/// The amplitudes by themselves.
-template <class Real = double>
-void set_amplitudes(complex_span z, double rate_Hz, line_pair& p, double relative) {
-  p.amplitude = {};
-  const auto n = normals_of(z, rate_Hz, p, relative);
-  const Eigen::VectorX<Real> c =
-      Eigen::MatrixX<Real>(n.matrix.topLeftCorner(4, 4)).ldlt().solve(Eigen::VectorX<Real>(n.gradient.head(4)));
-  p.amplitude = {std::complex{c[0], c[1]}, std::complex{c[2], c[3]}};
-}
-
-/// Levenberg and Marquardt from decay and detuning.
-template <class Real = double>
-line_pair fit_pair_from(const partial_track& t, line_pair p, double relative) {
-  const complex_span z{t.samples};
-  const double centre = full_turn * t.fit.model.centre_Hz;
-  p.shift_rad_s = relative * (centre + p.detuning_rad_s);
-  set_amplitudes(z, t.rate_Hz, p, relative);
-  auto n = normals_of(z, t.rate_Hz, p, relative);
-  double damping = 1e-3;
-  for (int k = 0; k < 25 && damping < 1e7; ++k) {
-    auto damped = n.matrix;
-    damped.diagonal() *= 1 + damping;
-    const Eigen::VectorX<Real> by = Eigen::MatrixX<Real>(damped).ldlt().solve(Eigen::VectorX<Real>(n.gradient));
-    line_pair next = p;
-    next.amplitude[0] += std::complex{by[0], by[1]};
-    next.amplitude[1] += std::complex{by[2], by[3]};
-    next.decay_per_s += by[4], next.detuning_rad_s += by[5];
-    next.shift_rad_s = relative * (centre + next.detuning_rad_s);
-    const auto there = normals_of(z, t.rate_Hz, next, relative);
-    if (!(there.residual < n.residual)) {
-      damping *= 8;
-      continue;
-    }
-    const bool done = n.residual - there.residual < 1e-7 * n.residual;
-    p = next, n = there, damping = std::max(damping / 8, 1e-12);
-    if (done) break;
-  }
-  p.residual = n.residual, p.information = n.matrix;
-  return p;
+line_pair fit_pair_from(const partial_track& t, const line_pair& start, double relative) {
+  const pair_descent problem{complex_span{t.samples}, t.rate_Hz, full_turn * t.fit.model.centre_Hz, relative};
+  line_pair from = problem.at(start, start.decay_per_s, start.detuning_rad_s);
+  problem.set_amplitudes(from);
+  auto found =
+      levenberg_marquardt(problem, from, {.less = 1.0 / 8, .more = 8, .ceiling = 1e7, .iterations = 25, .enough_relative = 1e-7});
+  found.at.residual = found.cost, found.at.information = found.equations.hessian;
+  return found.at;
 }
 
 }  // namespace detail

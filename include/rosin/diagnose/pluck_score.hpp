@@ -26,7 +26,7 @@ public:
 
   template <class = void>
   pluck_score(const problem& fitted, const Eigen::VectorXd& value) : problem_{fitted}, value_{value} {
-    const normal_equations eq = fitted.linearise(value);
+    const pluck_equations eq = fitted.linearise(value);
     solver_.compute(eq.hessian);
     gradient_ = eq.gradient;
     step_ = solver_.solve(gradient_);

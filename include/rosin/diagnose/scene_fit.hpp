@@ -152,7 +152,7 @@ double score_steps(const scene_data& data, scene_fit& fit, const fit_stage& stag
 template <class Real = double>
 void conclude(scene_fit& fit, const scene_data& data, const line_problem<scene_plucks>& problem) {
   fit.quality = problem.assess(fit.value);
-  const normal_equations end = problem.linearise(fit.value);
+  const pluck_equations end = problem.linearise(fit.value);
   const Eigen::MatrixX<Real> inverse = invert_free(problem.model(), end.hessian);
   fit.covariance = inverse * (end.prior + fit.quality.inflation() * problem.scatter(fit.value)) * inverse;
   Eigen::Index at = data.layout.size();
@@ -183,7 +183,7 @@ template <class = void>
       fit.converged =
           detail::descend(problem, problem.model(), value, fit.value, last ? 25 : 10, last ? 1e-2 : 1.0, fit.iterations);
       fit.score_sd.clear();
-      if (again && detail::score_steps(data, fit, stages[i], noise) < 0.05 && fit.iterations <= before + 1) break;
+      if (again && detail::score_steps(data, fit, stages[i], noise) < 0.05 && fit.iterations <= before + 2) break;
     }
     fit.horizon_periods = stages[i].periods;
   }

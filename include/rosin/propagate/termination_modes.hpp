@@ -14,6 +14,7 @@
 #pragma once
 
 #include <rosin/core/outcome.hpp>
+#include <rosin/math/levenberg_marquardt.hpp>
 #include <rosin/propagate/termination.hpp>
 
 #include <Eigen/Dense>
@@ -59,41 +60,80 @@ public:
       wanted_.push_back(2.0 * z / (1.0 + z));
       all_ += std::norm(wanted_.back());
     }
-    differ_ = {wanted_, all_};
+    now_ = {{}, wanted_, all_};
   }
 
   template <class = void>
   [[nodiscard]] modal_likeness run() {
     for (int in_vain = 0;
-         in_vain < 2 && all_ > 0 && mismatch() > limits_.tolerance && static_cast<int>(modes_.size()) < limits_.modes;) {
+         in_vain < 2 && all_ > 0 && mismatch() > limits_.tolerance && static_cast<int>(now_.modes.size()) < limits_.modes;) {
       const double before = mismatch();
-      add();
-      polish();
+      now_ = polished(with_more());
       in_vain = mismatch() < 0.95 * before ? 0 : in_vain + 1;
     }
-    return {{modes_}, mismatch()};
+    return {{now_.modes}, mismatch()};
+  }
+
+  /// Modes, and what their reflection misses.
+  struct trial {
+    std::vector<admittance_mode> modes;
+    std::vector<complex> missed;
+    double squares = 0;
+  };
+  [[nodiscard]] double cost(const trial& t) const { return t.squares; }
+  template <class Real = double>
+  [[nodiscard]] normal_equations<> linearise(const trial& t) const {
+    const auto n = static_cast<Eigen::Index>(3 * t.modes.size());
+    Eigen::MatrixX<Real> rows(n, static_cast<Eigen::Index>(2 * s_.size()));
+    Eigen::VectorX<Real> missed(rows.cols());
+    for (std::size_t k = 0; k < s_.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(2 * k);
+      missed[at] = t.missed[k].real(), missed[at + 1] = t.missed[k].imag();
+      const complex by = slope(t, k);
+      for (std::size_t m = 0; m < t.modes.size(); ++m) {
+        const double w = 2 * std::numbers::pi * t.modes[m].frequency_Hz, w_s = s_[k].imag();
+        const complex unit = unit_at(k, t.modes[m].frequency_Hz, t.modes[m].q),
+                      over{unit.imag() / w_s, -unit.real() / w_s};  // unit / s
+        const complex z = by * t.modes[m].per_mass_per_s * unit, resist{0, w_s * w / t.modes[m].q};
+        const std::array<complex, 3> d{-z * (resist + 2 * w * w) * over, z * resist * over, z};
+        for (std::size_t i = 0; i < 3; ++i) {
+          rows(static_cast<Eigen::Index>(3 * m + i), at) = d[i].real();
+          rows(static_cast<Eigen::Index>(3 * m + i), at + 1) = d[i].imag();
+        }
+      }
+    }
+    normal_equations<> equations{rows * rows.transpose(), rows * missed, t.squares};
+    equations.hessian.diagonal().array() += 1e-12 * equations.hessian.diagonal().maxCoeff();
+    return equations;
+  }
+  [[nodiscard]] trial moved(const trial& t, const Eigen::VectorXd& change) const {
+    auto modes = t.modes;
+    for (std::size_t m = 0; m < modes.size(); ++m) {
+      const auto by = [&](std::size_t i, double most) {
+        return std::exp(std::clamp(change[static_cast<Eigen::Index>(3 * m + i)], -most, most));
+      };
+      modes[m].frequency_Hz = std::clamp(modes[m].frequency_Hz * by(0, 0.2), limits_.from_Hz / 8, 3 * limits_.to_Hz);
+      modes[m].q = std::clamp(modes[m].q * by(1, 1), limits_.least_q, 2000.0);
+      modes[m].per_mass_per_s *= by(2, 2);
+    }
+    return tried(std::move(modes));
   }
 
 private:
-  struct difference {
-    std::vector<complex> of_reflection;
-    double sum = 0;
-  };
-
-  [[nodiscard]] double mismatch() const { return all_ > 0 ? std::sqrt(differ_.sum / all_) : 0; }
-  [[nodiscard]] difference missed_by(const std::vector<admittance_mode>& modes) const {
-    difference out{wanted_, 0};
+  [[nodiscard]] double mismatch() const { return all_ > 0 ? std::sqrt(now_.squares / all_) : 0; }
+  [[nodiscard]] trial tried(std::vector<admittance_mode> modes) const {
+    trial out{std::move(modes), wanted_, 0};
     for (std::size_t k = 0; k < s_.size(); ++k) {
       complex z = 0;
-      for (const auto& m : modes) z += m.per_mass_per_s * unit_at(k, m.frequency_Hz, m.q);
-      out.of_reflection[k] -= 2.0 * z / (1.0 + z);
-      out.sum += std::norm(out.of_reflection[k]);
+      for (const auto& m : out.modes) z += m.per_mass_per_s * unit_at(k, m.frequency_Hz, m.q);
+      out.missed[k] -= 2.0 * z / (1.0 + z);
+      out.squares += std::norm(out.missed[k]);
     }
     return out;
   }
   /// dR / dz, from R itself.
-  [[nodiscard]] complex slope(std::size_t k) const {
-    const complex half = 1.0 - 0.5 * (wanted_[k] - differ_.of_reflection[k]);  // 1 / (1 + z)
+  [[nodiscard]] complex slope(const trial& t, std::size_t k) const {
+    const complex half = 1.0 - 0.5 * (wanted_[k] - t.missed[k]);  // 1 / (1 + z)
     return 2.0 * half * half;
   }
 
@@ -115,13 +155,13 @@ private:
     return {along > 0 ? along * along / size : 0, {f, q, along / size}};
   }
 
-  /// Up to three modes, apart from each other, each of which alone would take most from the difference.
-  void add() {
+  /// Up to three modes more, apart from each other, each of which alone would take most from the difference.
+  [[nodiscard]] std::vector<admittance_mode> with_more() const {
     std::vector<double> weight;
     std::vector<complex> pull;
     for (std::size_t k = 0; k < s_.size(); ++k) {
-      const complex by = slope(k);
-      weight.push_back(std::norm(by)), pull.push_back(std::conj(by) * differ_.of_reflection[k]);
+      const complex by = slope(now_, k);
+      weight.push_back(std::norm(by)), pull.push_back(std::conj(by) * now_.missed[k]);
     }
     std::vector<std::pair<double, admittance_mode>> found;
     for (const double sharp : {0.3, 2.0, 8.0, 25.0, 80.0}) {
@@ -132,69 +172,27 @@ private:
         found.push_back(gain_of(f, q, weight, pull));
     }
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    const std::size_t had = modes_.size();
-    for (auto it = found.begin(); it != found.end() && it->first > 0 && modes_.size() < had + 3; ++it)
-      if (std::none_of(modes_.begin() + static_cast<std::ptrdiff_t>(had), modes_.end(),
+    auto modes = now_.modes;
+    const std::size_t had = modes.size();
+    for (auto it = found.begin(); it != found.end() && it->first > 0 && modes.size() < had + 3; ++it)
+      if (std::none_of(modes.begin() + static_cast<std::ptrdiff_t>(had), modes.end(),
                        [&](const auto& m) { return std::abs(std::log(it->second.frequency_Hz / m.frequency_Hz)) < 0.3; }))
-        modes_.push_back(it->second);
+        modes.push_back(it->second);
+    return modes;
   }
 
-  /// Steps of Levenberg and Marquardt as long as they help.
-  template <class Real = double>
-  void polish() {
-    differ_ = missed_by(modes_);
-    double damping = 1e-3;
-    for (int step = 0, failed = 0; step < 8 && failed < 4; ++step) {
-      auto [normal, pull] = linearised();
-      normal.diagonal() *= 1 + damping;
-      normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
-      const Eigen::VectorX<Real> change = normal.ldlt().solve(pull);
-      auto tried = modes_;
-      for (std::size_t m = 0; m < tried.size(); ++m) move(tried[m], change.template segment<3>(static_cast<Eigen::Index>(3 * m)));
-      auto left = missed_by(tried);
-      const bool better = left.sum < differ_.sum;
-      failed = better ? 0 : failed + 1, damping *= better ? 0.2 : 10;
-      if (!better) continue;
-      const bool hardly = left.sum > 0.998 * differ_.sum;
-      modes_ = std::move(tried), differ_ = std::move(left);
-      if (hardly) break;
-    }
-  }
-  void move(admittance_mode& m, const Eigen::Vector3d& change) const {
-    const auto by = [&](int i, double most) { return std::exp(std::clamp(change[i], -most, most)); };
-    m.frequency_Hz = std::clamp(m.frequency_Hz * by(0, 0.2), limits_.from_Hz / 8, 3 * limits_.to_Hz);
-    m.q = std::clamp(m.q * by(1, 1), limits_.least_q, 2000.0);
-    m.per_mass_per_s *= by(2, 2);
-  }
-  template <class Real = double>
-  [[nodiscard]] std::pair<Eigen::MatrixXd, Eigen::VectorXd> linearised() const {
-    const auto n = static_cast<Eigen::Index>(3 * modes_.size());
-    Eigen::MatrixX<Real> rows(n, static_cast<Eigen::Index>(2 * s_.size()));
-    Eigen::VectorX<Real> missed(rows.cols());
-    for (std::size_t k = 0; k < s_.size(); ++k) {
-      const auto at = static_cast<Eigen::Index>(2 * k);
-      missed[at] = differ_.of_reflection[k].real(), missed[at + 1] = differ_.of_reflection[k].imag();
-      const complex by = slope(k);
-      for (std::size_t m = 0; m < modes_.size(); ++m) {
-        const double w = 2 * std::numbers::pi * modes_[m].frequency_Hz, w_s = s_[k].imag();
-        const complex unit = unit_at(k, modes_[m].frequency_Hz, modes_[m].q),
-                      over{unit.imag() / w_s, -unit.real() / w_s};  // unit / s
-        const complex z = by * modes_[m].per_mass_per_s * unit, resist{0, w_s * w / modes_[m].q};
-        const std::array<complex, 3> d{-z * (resist + 2 * w * w) * over, z * resist * over, z};
-        for (std::size_t i = 0; i < 3; ++i) {
-          rows(static_cast<Eigen::Index>(3 * m + i), at) = d[i].real();
-          rows(static_cast<Eigen::Index>(3 * m + i), at + 1) = d[i].imag();
-        }
-      }
-    }
-    return {rows * rows.transpose(), rows * missed};
+  /// A few steps, as long as they help.
+  template <class = void>
+  [[nodiscard]] trial polished(std::vector<admittance_mode> modes) const {
+    return levenberg_marquardt(*this, tried(std::move(modes)),
+                               {.less = 0.2, .floor = 0, .iterations = 8, .rejections = 4, .enough_relative = 0.002})
+        .at;
   }
 
   mode_limits limits_;
   std::vector<complex> s_, wanted_;  ///< R + 1 is wanted
   double all_ = 0;
-  std::vector<admittance_mode> modes_;
-  difference differ_;
+  trial now_;
 };
 
 }  // namespace detail

@@ -16,6 +16,7 @@
 
 #include <rosin/core/instantiate.hpp>
 #include <rosin/math/median.hpp>
+#include <rosin/math/reweighted_regression.hpp>
 
 #include <Eigen/Dense>
 
@@ -61,26 +62,20 @@ struct period_medians {
   [[nodiscard]] Eigen::Index size() const noexcept { return static_cast<Eigen::Index>(at_s.size()); }
 };
 
-/// A line through medians against one column, with Cauchy's weights; the cost at its least.
+/// A line through medians against one column, by Cauchy's likelihood; the cost at its least.
 struct approach_line {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();  ///< level, factor of the column
   double cost = 0;
   Eigen::VectorXd left;
 
-  template <class Real = double>
+  template <class = void>
   approach_line(const Eigen::VectorXd& target, const Eigen::VectorXd& column, double scale) {
+    constexpr cauchy_loss<> loss;
     value[0] = target.maxCoeff();
-    for (int pass = 0; pass < 12; ++pass) {
-      left = target.array() - value[0] - value[1] * column.array();
-      const Eigen::ArrayX<Real> weight = 1 / (1 + (left / scale).array().square());
-      Eigen::MatrixX<Real> x(target.size(), 2);
-      x << Eigen::VectorX<Real>::Ones(target.size()), column;
-      Eigen::Matrix2d h = x.transpose() * (x.array().colwise() * weight).matrix();
-      h(1, 1) += 1e-12 + (column.isZero() ? 1 : 0);
-      value = h.ldlt().solve(x.transpose() * (target.array() * weight).matrix());
-    }
+    const auto row = [&](Eigen::Index i) { return regression_row<double, 2>{{1, column[i]}, target[i]}; };
+    for (int pass = 0; pass < 12; ++pass) reweighted_pass(loss, scale, 0, target.size(), row, value);
     left = target.array() - value[0] - value[1] * column.array();
-    cost = (1 + (left / scale).array().square()).log().sum();
+    for (const double r : left) cost += 2 * loss.rho(r / scale);
   }
   template <class = void>
   [[nodiscard]] double scatter() const {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/core/instantiate.hpp>
+#include <rosin/math/robust_loss.hpp>
 
 #include <Eigen/Dense>
 
@@ -46,17 +47,17 @@ struct stick_prior {
 
 namespace detail {
 
-inline constexpr double student_freedom = 4;
+inline constexpr student_loss<> stick_loss{4};
 
 [[nodiscard]] inline double student_log_density(double x, double scale) {
-  constexpr double nu = student_freedom;  // ln Gamma((nu+1)/2) - ln Gamma(nu/2) - ln(nu pi) / 2 for nu = 4
-  return -0.98082925301172623 - std::log(scale) - 0.5 * (nu + 1) * std::log1p(x * x / (nu * scale * scale));
+  constexpr double of_zero = -0.98082925301172623;  // ln Gamma((n + 1)/2) - ln Gamma(n/2) - ln(n pi) / 2 for n = 4
+  return of_zero - std::log(scale) - stick_loss.rho(x / scale);
 }
 
 /// What squares are to be weighted by, as Student's likelihood asks; and what to multiply rows by for that.
 template <class = void>
 [[nodiscard]] Eigen::VectorXd student_weights(const Eigen::VectorXd& residual, double scale) {
-  return ((residual.array().square() / (scale * scale) + student_freedom).inverse() * (student_freedom + 1)).matrix();
+  return (residual / scale).unaryExpr([](double u) { return stick_loss.weight(u); });
 }
 template <class = void>
 [[nodiscard]] Eigen::VectorXd student_row_factors(const Eigen::VectorXd& residual, double scale) {
@@ -163,10 +164,9 @@ template <class Real = double>
     out.own.push_back(value.segment(at, takes[t].own.cols()));
     out.residual.push_back(residual.segment(s.first[t], s.first[t + 1] - s.first[t]));
   }
-  const Eigen::ArrayX<Real> ratio = residual.array().square() / (out.scale * out.scale),
-                            nu = Eigen::ArrayX<Real>::Constant(n, detail::student_freedom);
   // of the influence, against the weights
-  const double slope = ((nu + 1) * (nu - ratio) / (nu + ratio).square()).sum() / weight.sum();
+  const double slope =
+      (residual / out.scale).unaryExpr([](double u) { return detail::stick_loss.slope(u); }).sum() / weight.sum();
   const Eigen::MatrixX<Real> inverse = hessian.ldlt().solve(Eigen::MatrixX<Real>::Identity(all, all)) / std::max(0.2, slope);
   out.covariance = detail::sandwich(s, weight.cwiseProduct(residual), inverse).topLeftCorner(shared, shared);
   out.rows = static_cast<double>(n);

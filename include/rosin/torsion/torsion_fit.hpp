@@ -16,6 +16,7 @@
 
 #include <rosin/core/instantiate.hpp>
 #include <rosin/core/outcome.hpp>
+#include <rosin/math/reweighted_regression.hpp>
 #include <rosin/torsion/stick_data.hpp>
 #include <rosin/torsion/torsion_modes.hpp>
 #include <rosin/torsion/torsion_response.hpp>
@@ -102,20 +103,13 @@ template <class = void>
                                  double& size) {
   Eigen::Vector3d value(0, size, 0);
   double cost = 0;
+  const auto row = [&](Eigen::Index i) {
+    const auto k = static_cast<std::size_t>(i);
+    return regression_row<double, 3>{{1, shape[k], slope[k]}, -target[k]};
+  };
   for (const double scale : {1.0, 0.5, 0.25, 0.12, 0.12, 0.12}) {
-    Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d g = Eigen::Vector3d::Zero();
-    const double s2 = std::pow(scale * speed, 2);
-    cost = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d x(1, shape[i], slope[i]);
-      const double r = target[i] + x.dot(value), w = 1 / (1 + r * r / s2);
-      h += w * x * x.transpose();
-      g -= w * target[i] * x;
-      cost -= std::log(w);
-    }
-    h.diagonal().array() += 1e-12 * h.diagonal().maxCoeff();
-    value = h.ldlt().solve(g);
+    cost = 2 * reweighted_pass(cauchy_loss<>{}, scale * speed, static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end),
+                               row, value);
     value[1] = std::max(value[1], 0.0);
   }
   size = value[1];

@@ -43,7 +43,7 @@ TEST_CASE("gradient and Hessian are the derivatives of the cost, AC-coupled sens
     v[rosin::pluck_layout::convention] = -0.5;
     v[rosin::pluck_layout::causality] = 0.8, v[rosin::pluck_layout::loss_drag] = 0.01;
     const rosin::pluck_problem problem(data, {layout, guess.ac_coupled_Hz}, options, guess, v, 12, 1e9, false, {0.1, 0.3});
-    const rosin::normal_equations at = problem.linearise(v);
+    const auto at = problem.linearise(v);
     CHECK((at.hessian - at.hessian.transpose()).norm() < 1e-9 * at.hessian.norm());
     for (Eigen::Index p = 0; p < layout.size(); ++p) {
       CAPTURE(layout.name(p));
