@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/math/lanes.hpp>
+#include <rosin/math/robust_loss.hpp>
 
 extern "C" void rosin_lanes(float* data, const float* twiddle) noexcept {
   using lanes = rosin::lane_complex<float, rosin::register_lanes<float>>;

@@ -128,8 +128,8 @@ using real_of = std::remove_cvref_t<decltype(equations_of<Problem, Point>::cost)
 /// Allocates nothing where the size of the equations is fixed (and the problem does not).
 template <class Problem, class Point>
 requires LeastSquares<Problem, Point>
-[[nodiscard]] auto levenberg_marquardt(const Problem& problem, Point start,
-                                       const descent_options<detail::real_of<Problem, Point>>& options = {}) {
+[[nodiscard]] descent<Point, detail::equations_of<Problem, Point>, detail::real_of<Problem, Point>> levenberg_marquardt(
+    const Problem& problem, Point start, const descent_options<detail::real_of<Problem, Point>>& options = {}) {
   using Equations = detail::equations_of<Problem, Point>;
   using Real = detail::real_of<Problem, Point>;
   using Vector = decltype(Equations::gradient);
