@@ -3,21 +3,17 @@
 //
 // Recordings from and to files through libsndfile: WAV, RF64, FLAC, AIFF, W64, CAF with 8 to 32 bit PCM or floating point.
 // Lossy encodings are refused: what they throw away is what is measured here. A file whose header promises more samples
-// than are there is refused too.
+// than are there is refused too; one whose header does not tell how many there are is read to its end (riff_layout.hpp).
 //
 #pragma once
 
 #include <rosin/acquire/recording.hpp>
-#include <rosin/adapt/riff_layout.hpp>
+#include <rosin/adapt/wav_samples.hpp>
 #include <rosin/report/output_file.hpp>
 
-#include <sndfile.h>
-
-#include <algorithm>
-#include <cctype>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <memory>
 
 namespace rosin {
 
@@ -27,14 +23,10 @@ struct audio_format {
   int channels = 0, bits = 0;
   bool float_format = false;
   std::uint64_t frames = 0;
+  bool length_told = true;  ///< by the header; if not, all was read that is there
 };
 
 namespace detail {
-
-struct close_sndfile {
-  void operator()(SNDFILE* file) const noexcept { sf_close(file); }
-};
-using sndfile_handle = std::unique_ptr<SNDFILE, close_sndfile>;
 
 /// Bits of a sample: negative for floating point, 0 for an encoding that is not exact.
 [[nodiscard]] inline int sample_bits(int format) noexcept {
@@ -60,17 +52,6 @@ using sndfile_handle = std::unique_ptr<SNDFILE, close_sndfile>;
   }
 }
 
-/// A WAV file whose end is missing, in words; empty where all is there or the file is of another kind.
-[[nodiscard]] inline std::string missing_end(const std::string& path) {
-  std::ifstream in{path, std::ios::binary};
-  const auto layout = read_riff_layout(in);
-  if (!layout) return {};
-  if (!layout->data_offset) return "truncated: the file ends before its samples begin";
-  if (!layout->data_promised || *layout->data_promised <= layout->data_present()) return {};
-  return "truncated: the header promises " + std::to_string(*layout->data_promised) + " bytes of samples, the file holds " +
-         std::to_string(layout->data_present());
-}
-
 [[nodiscard]] inline std::string format_problem(const SF_INFO& info) {
   if (sample_bits(info.format) == 0) return "is neither PCM nor floating point: a lossy encoding is no measurement";
   if (info.frames <= 0) return "holds no samples";
@@ -79,17 +60,56 @@ using sndfile_handle = std::unique_ptr<SNDFILE, close_sndfile>;
   return {};
 }
 
+/// A file of another kind whose head promises more than the file holds, in words: libsndfile takes what is there, and notes
+/// "SSND : 4008 (should be 1981)".
+[[nodiscard]] inline std::string missing_end(SNDFILE* file) {
+  std::array<char, 16384> notes{};
+  sf_command(file, SFC_GET_LOG_INFO, notes.data(), static_cast<int>(notes.size()) - 1);
+  const std::string text = notes.data();
+  constexpr std::string_view should = " (should be ";
+  for (std::size_t at = text.find(should); at != std::string::npos; at = text.find(should, at + 1)) {
+    const std::size_t begin = text.rfind(' ', at - 1) + 1;
+    const auto promised = std::strtoull(text.c_str() + begin, nullptr, 10),
+               present = std::strtoull(text.c_str() + at + should.size(), nullptr, 10);
+    if (promised > present && !is_no_size(promised))
+      return "truncated: the header promises " + std::to_string(promised) + " bytes where the file holds " +
+             std::to_string(present);
+  }
+  return {};
+}
+
+/// A file that can be read, with what libsndfile is shown of it.
+struct opened_audio {
+  std::unique_ptr<shown_wav> shown;  ///< empty: the file itself
+  sndfile_handle file;
+  SF_INFO info{};
+  bool length_told = true;
+};
+
+[[nodiscard]] inline std::string unreadable(const std::string& name) {
+  return name + ": is no recording that can be read, or it is damaged (libsndfile: " + sf_strerror(nullptr) + ")";
+}
+
 /// Opened and found sound, or why not.
-[[nodiscard]] inline outcome<sndfile_handle> open_audio(const std::string& path, SF_INFO& info) {
+[[nodiscard]] inline outcome<opened_audio> open_audio(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return failure{path + ": no such file"};
   if (std::filesystem::is_directory(path, ignored)) return failure{path + ": is a folder"};
   if (std::filesystem::file_size(path, ignored) == 0) return failure{path + ": is empty"};
-  if (const auto why = missing_end(path); !why.empty()) return failure{path + ": " + why};
-  sndfile_handle file{sf_open(path.c_str(), SFM_READ, &info)};
-  if (!file) return failure{path + ": " + sf_strerror(nullptr)};
-  if (const auto why = format_problem(info); !why.empty()) return failure{path + ": " + why};
-  return file;
+  opened_audio out;
+  auto bytes = std::make_unique<file_bytes>(path);
+  if (const auto layout = read_riff_layout(bytes->stream())) {
+    if (const auto why = wav_problem(*layout); !why.empty()) return failure{path + ": " + why};
+    const std::uint64_t size = layout->data_promised.value_or(layout->data_present());
+    out.shown = std::make_unique<shown_wav>(std::move(bytes), plain_wav_head(*layout, size), *layout->data_offset, size);
+    out.length_told = layout->data_promised.has_value();
+  }
+  out.file = out.shown ? out.shown->open(out.info) : sndfile_handle{sf_open(path.c_str(), SFM_READ, &out.info)};
+  if (!out.file) return failure{unreadable(path)};
+  auto why = format_problem(out.info);
+  if (why.empty() && !out.shown) why = missing_end(out.file.get());
+  if (!why.empty()) return failure{path + ": " + why};
+  return out;
 }
 
 /// Frame by frame into separate channels; the number of frames that could be read.
@@ -111,22 +131,22 @@ inline std::size_t read_frames(SNDFILE* file, const SF_INFO& info, std::vector<s
 
 /// The header alone.
 [[nodiscard]] inline outcome<audio_format> read_audio_format(const std::string& path) {
-  SF_INFO info{};
-  const auto file = detail::open_audio(path, info);
-  if (!file) return failure{file.error()};
+  const auto opened = detail::open_audio(path);
+  if (!opened) return failure{opened.error()};
+  const SF_INFO& info = opened->info;
   const int bits = detail::sample_bits(info.format);
-  return audio_format{static_cast<double>(info.samplerate), info.channels, std::abs(bits), bits < 0,
-                      static_cast<std::uint64_t>(info.frames)};
+  return audio_format{static_cast<double>(info.samplerate),    info.channels,      std::abs(bits), bits < 0,
+                      static_cast<std::uint64_t>(info.frames), opened->length_told};
 }
 
 /// The whole recording.
 [[nodiscard]] inline outcome<recording> read_audio(const std::string& path) {
-  SF_INFO info{};
-  const auto file = detail::open_audio(path, info);
-  if (!file) return failure{file.error()};
+  const auto opened = detail::open_audio(path);
+  if (!opened) return failure{opened.error()};
+  const SF_INFO& info = opened->info;
   const int bits = detail::sample_bits(info.format);
   recording out{path, static_cast<double>(info.samplerate), {}, std::abs(bits), bits < 0};
-  const std::size_t frames = detail::read_frames(file->get(), info, out.channels);
+  const std::size_t frames = detail::read_frames(opened->file.get(), info, out.channels);
   const auto promised = static_cast<std::size_t>(info.frames);
   if (frames == 0) return failure{path + ": holds no samples that can be read"};
   if (frames < promised && info.frames != SF_COUNT_MAX)

@@ -52,6 +52,14 @@ inline void note_shared_files(rig_folder& folder) {
         folder.notes.push_back("takes " + takes[j].name + " and " + takes[i].name + " are the same file " + takes[i].file);
 }
 
+inline void note_untold_lengths(rig_folder& folder) {
+  for (std::size_t i = 0; i < folder.formats.size(); ++i)
+    if (!folder.formats[i].length_told)
+      folder.notes.push_back(folder.rig.path_of(folder.rig.takes[i].file) +
+                             ": its header does not tell how long it is: what is there was read, " +
+                             std::to_string(folder.formats[i].frames) + " frames");
+}
+
 }  // namespace detail
 
 /// The rig and the headers of its recordings, or everything that is wrong with them.
@@ -69,6 +77,7 @@ inline void note_shared_files(rig_folder& folder) {
   if (!log.empty()) return log.to_failure();
   detail::note_unnamed_channels(out);
   detail::note_shared_files(out);
+  detail::note_untold_lengths(out);
   return out;
 }
 

@@ -112,6 +112,55 @@ TEST_CASE("a file that lost its end is refused, wherever it was cut") {
   const std::string flac = folder.read("a.flac");
   folder.write("cut.flac", flac.substr(0, flac.size() / 2));
   CHECK_FALSE(rosin::read_audio(folder / "cut.flac"));
+  for (const int format : {SF_FORMAT_AIFF, SF_FORMAT_AU, SF_FORMAT_W64, SF_FORMAT_CAF}) {
+    CAPTURE(format);
+    write_as(folder / "a", format | SF_FORMAT_PCM_16, std::vector<short>(6000, 5), 1);
+    const std::string bytes_of_it = folder.read("a");
+    folder.write("cut", bytes_of_it.substr(0, bytes_of_it.size() / 2));
+    CHECK(rosin::read_audio(folder / "a"));
+    CHECK_FALSE(rosin::read_audio(folder / "cut"));
+  }
+}
+
+TEST_CASE("a head that does not tell the length, in all its ways, is read to the end; chunks of any version beside it") {
+  const test::temporary_folder folder;
+  const auto written = noise(2, 1000, 16, false);
+  REQUIRE_FALSE(rosin::write_audio(folder / "a.wav", written, rosin::overwrite::refuse));
+  const std::string whole = folder.read("a.wav"), head = whole.substr(12, 24), samples = whole.substr(44);
+  REQUIRE(whole.substr(36, 4) == "data");
+  const auto number = [](std::uint64_t value, int bytes) {
+    std::string out;
+    for (int i = 0; i < bytes; ++i) out += static_cast<char>(i < 8 ? value >> 8 * i & 0xffU : 0U);
+    return out;
+  };
+  const auto same = [&](const std::string& bytes, bool told) {
+    folder.write("b.wav", bytes);
+    const auto format = rosin::read_audio_format(folder / "b.wav");
+    const auto read = rosin::read_audio(folder / "b.wav");
+    REQUIRE(read);
+    CHECK(format->length_told == told);
+    CHECK(format->frames == 1000);
+    CHECK(read->channels == rosin::read_audio(folder / "a.wav")->channels);
+  };
+  for (const std::uint64_t size : {0U, 0x7ffff000U, 0x80000000U, 0xffffffffU}) {
+    CAPTURE(size);
+    same("RIFF" + number(size, 4) + "WAVE" + head + "data" + number(size, 4) + samples, false);
+    same("RIFF" + number(size, 4) + "WAVE" + head + "data" + number(size, 4) + samples + "x", false);  // half a sample more
+  }
+  for (const char* form : {"RF64", "BW64"})
+    same(form + number(0xffffffffU, 4) + "WAVEds64" + number(28, 4) + number(0, 28) + head + "data" + number(0xffffffffU, 4) +
+             samples,
+         false);
+  const std::string data = "data" + number(samples.size(), 4) + samples;
+  for (const std::string& before :
+       {"bext" + number(3, 4) + "abc", "PEAK" + number(24, 4) + number(77, 24), "PEAK" + number(2, 4) + "xy"})
+    same("RIFF" + number(0, 4) + "WAVE" + before + head + before + data + before, true);
+  folder.write("two.wav", "RIFF" + number(0, 4) + "WAVE" + head + data + data);
+  CHECK(rosin::read_audio(folder / "two.wav").error().find("two chunks of samples") != std::string::npos);
+  std::string no_rate = whole;
+  no_rate.replace(24, 4, 4, '\0');
+  folder.write("rate.wav", no_rate);
+  CHECK(rosin::read_audio(folder / "rate.wav").error().find("0 samples a second") != std::string::npos);
 }
 
 TEST_CASE("what is no recording") {

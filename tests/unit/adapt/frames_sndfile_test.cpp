@@ -89,6 +89,45 @@ TEST_CASE("a WAV file through a pipe, in dribs and drabs, and bare samples") {
   }
 }
 
+TEST_CASE("a stream that does not tell its length is read to its end; one that ends before its length says so") {
+  const test::temporary_folder folder;
+  make(folder, "a", SF_FORMAT_WAV | SF_FORMAT_PCM_16, 5003);
+  const std::string whole = folder.read("a");
+  const std::size_t size_at = whole.find("data") + 4;
+  for (const char* size : {"\0\0\0\0", "\0\xf0\xff\x7f", "\0\0\0\x80", "\xff\xff\xff\xff", "as it was"}) {
+    const bool told = *size == 'a';
+    CAPTURE(told);
+    std::string bytes = whole.substr(0, whole.size() - 6);
+    if (!told) bytes.replace(size_at, 4, std::string{size, 4});
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe(ends.data()) == 0);
+    std::jthread writer{[&] {
+      CHECK(::write(ends[1], bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()));
+      ::close(ends[1]);
+    }};
+    auto from = rosin::sndfile_source::open_pipe(ends[0]);
+    REQUIRE(from.has_value());
+    std::string problem;
+    CHECK(count_right(*from, &problem) == 5002);
+    CHECK((problem.find("ended early") != std::string::npos) == told);
+    writer.join();
+    ::close(ends[0]);
+  }
+}
+
+TEST_CASE("a stream that is none, or of no rate, is refused in words") {
+  for (const std::string& bytes : {std::string{}, std::string{"RIFF"}, std::string{"RIFF\0\0\0\0WAVEfmt ", 16}}) {
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe(ends.data()) == 0);
+    REQUIRE(::write(ends[1], bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()));
+    ::close(ends[1]);
+    const auto from = rosin::sndfile_source::open_pipe(ends[0]);
+    REQUIRE_FALSE(from.has_value());
+    CHECK(from.error().find(bytes.empty() ? "nothing came" : "ended before its samples") != std::string::npos);
+    ::close(ends[0]);
+  }
+}
+
 TEST_CASE("a file that is damaged inside ends with a reason") {
   const test::temporary_folder folder;
   make(folder, "a.flac", SF_FORMAT_FLAC | SF_FORMAT_PCM_16, 50000);

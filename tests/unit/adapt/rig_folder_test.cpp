@@ -98,6 +98,18 @@ TEST_CASE("channels that nobody named and files that occur twice are worth a not
   CHECK(open->notes.back() == "takes a and b are the same file a.wav");
 }
 
+TEST_CASE("a recording whose header does not tell its length is read to its end, and that is worth a note") {
+  const rig_on_disk rig;
+  std::string bytes = rig.folder.read("a.wav");
+  bytes.replace(bytes.find("data") + 4, 4, 4, '\xff');
+  rig.folder.write("a.wav", bytes);
+  const auto open = rosin::open_rig_folder(rig.folder.str());
+  REQUIRE(open);
+  REQUIRE(open->notes.size() == 1);
+  CHECK(open->notes[0].find("a.wav: its header does not tell how long it is") != std::string::npos);
+  CHECK(rosin::load_take(open->rig, open->rig.takes[0])->frames() == 3);
+}
+
 TEST_CASE("a take that was changed after the folder was opened") {
   const rig_on_disk rig;
   const auto open = rosin::open_rig_folder(rig.folder.str());
