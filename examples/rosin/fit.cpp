@@ -6,6 +6,7 @@
 #include "emit_header.hpp"
 #include "fit_pickup_rig.hpp"
 #include "fit_report.hpp"
+#include "pluck_input.hpp"
 
 #include <iostream>
 #include <memory>
@@ -87,6 +88,23 @@ exit_code deliver(const Calibration& c, const fit_options& given, const provenan
   return outcome_of(c.incomplete, !c.warnings.empty(), given);
 }
 
+/// From single channels; `instead` says why, where both ends have a force transducer and nobody asked for it.
+exit_code fit_pickups(const fit_options& given, const rosin::rig& rig, provenance from, const std::string& instead) {
+  const bool as_json = given.json_file == "-";
+  if (!given.header.path.empty()) return fail(rig.file + ": --emit-header: force transducers at both ends are needed", as_json);
+  auto fitted = calibrate_pickups(rig, from);
+  if (!fitted) return fail(fitted.error(), as_json);
+  if (!instead.empty()) fitted->warnings.push_back(instead), fitted->incomplete = true;
+  return deliver(*fitted, given, from, [](const pickup_calibration& c) {
+    std::cout << c.title << ": pitch, stiffness and loss from single channels\n";
+    std::vector<calibration_row> rows;
+    for (const auto& one : c.results)
+      for (auto& row : rows_of(one)) rows.push_back(std::move(row));
+    print_rows(rows);
+    print_remarks(c.warnings, c.assumed, true);
+  });
+}
+
 exit_code run(const fit_options& given, provenance from) {
   const bool as_json = given.json_file == "-";
   for (const auto* file : {&given.json_file, &given.report, &given.header.path})
@@ -96,21 +114,12 @@ exit_code run(const fit_options& given, provenance from) {
     if (const auto why = cannot_draw()) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
-  if (given.pickup || !folder->rig.has_both_forces()) {
-    if (!given.header.path.empty())
-      return fail(folder->rig.file + ": --emit-header: force transducers at both ends are needed", as_json);
-    const auto fitted = calibrate_pickups(folder->rig, from);
-    if (!fitted) return fail(fitted.error(), as_json);
-    return deliver(*fitted, given, from, [](const pickup_calibration& c) {
-      std::cout << c.title << ": pitch, stiffness and loss from single channels\n";
-      std::vector<calibration_row> rows;
-      for (const auto& one : c.results)
-        for (auto& row : rows_of(one)) rows.push_back(std::move(row));
-      print_rows(rows);
-      print_remarks(c.warnings, c.assumed, true);
-    });
-  }
+  if (given.pickup || !folder->rig.has_both_forces()) return fit_pickups(given, folder->rig, from, {});
   const auto fitted = calibrate(folder->rig, from, !given.report.empty());
+  if (!fitted && given.header.path.empty() && all_begin_late(folder->rig, from))
+    return fit_pickups(given, folder->rig, from,
+                       "no pluck holds its release: gains, polarity, order of the channels, place of the contact and the wire's "
+                       "force cannot be known; pitch, stiffness and loss are from what rings in each channel");
   if (!fitted) return fail(fitted.error(), as_json);
   std::vector<std::string> said;
   if (!given.header.path.empty() && any_end_moves(folder->rig))
@@ -143,7 +152,8 @@ void add_fit(CLI::App& app, exit_code& result) {
       "All plucks that are not marked hold_out are fitted together: pitch, place of the contact, delays to both ends,\n"
       "bending stiffness, loss, gains and noise of the channels, instant and force of each release. Each value comes with\n"
       "one standard deviation, random and systematic apart. Plucks marked hold_out are predicted, not fitted.\n"
-      "Without force transducers at both ends: partials, inharmonicity, bending stiffness and loss from each channel.\n"
+      "Without force transducers at both ends, or where no pluck holds its release: partials, inharmonicity, bending\n"
+      "stiffness and loss from each channel.\n"
       "Exit status: 0 done, 1 done but plucks had to be left out or the fit did not settle, 2 nothing could be fitted.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }

@@ -97,6 +97,19 @@ rig_plucks read_plucks(const rosin::rig& rig, provenance& from) {
   return out;
 }
 
+bool all_begin_late(const rosin::rig& rig, provenance& from) {
+  bool any = false;
+  for (const auto& take : rig.takes) {
+    if (take.kind != rosin::take_kind::pluck || take.hold_out) continue;
+    const auto read = read_take(rig, take, from);
+    if (!read || !read->check.found("begins-late")) return false;
+    for (const rosin::finding& f : read->check.findings)
+      if (f.level == rosin::severity::error && f.kind != "begins-late") return false;
+    any = true;
+  }
+  return any;
+}
+
 rosin::pluck_guess guess_of(const rosin::rig& rig, const rosin::rig_values& values) {
   const auto& near = *rig.channel("near");
   const auto& far = *rig.channel("far");

@@ -20,6 +20,9 @@ struct rig_plucks {
 /// every one lost samples, what they are before that is used, and said.
 [[nodiscard]] rig_plucks read_plucks(const rosin::rig& rig, provenance& from);
 
+/// No pluck that is to be fitted holds its release, and nothing else is wrong with them: what rings can be used.
+[[nodiscard]] bool all_begin_late(const rosin::rig& rig, provenance& from);
+
 /// The effects that [model] physics declares, and what of them a fit of plucks has options for.
 [[nodiscard]] std::vector<std::string> physics_of(const rosin::rig& rig);
 [[nodiscard]] rosin::pluck_options options_for(const std::vector<std::string>& physics);

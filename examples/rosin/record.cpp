@@ -3,6 +3,7 @@
 // rosin record: takes from a digitiser into a rig folder.
 //
 #include "commands.hpp"
+#include "digits.hpp"
 #include "recorder.hpp"
 #include "sled.hpp"
 
@@ -105,6 +106,10 @@ exit_code run(const options& given) {
   if (!input) return fail(input.error(), given.json);
   recorder from{*std::move(input), given.how};
   if (std::string why; !channels_fit(*files->with(first), from.format(), why)) return fail(why, given.json);
+  const double period_s = 1 / files->with(first)->string.fundamental_Hz;
+  if (first.kind == "pluck" && given.how.trigger.threshold > 0 && given.how.trigger.before_s < 2 * period_s)
+    std::cerr << "rosin: --before " << in_digits(given.how.trigger.before_s) << " s is less than two periods of the string ("
+              << in_digits(2 * period_s) << " s): a pluck without its release cannot be calibrated from\n";
   std::vector<take_report> reports;
   const auto why = record_all(given, *files, from, reports);
   if (why && reports.empty()) return fail(why->message, given.json);

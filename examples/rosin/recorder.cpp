@@ -93,13 +93,16 @@ public:
       if (before && got.lost > 0 && report_.frames > 0 && !missing(got.lost)) return false;
       if (!keep(part)) return false;
     }
+    tell_unrest(got.frames);
     note_time(watch, got.frames);
     if (got.ended) report_.over = true;
     if (got.ended && report_.frames == 0 && !trigger_.fired()) problem("the source ended before the trigger was reached");
     return !got.ended && report_.frames < most_ && !asked_to_end();
   }
   void draw() {
-    const std::string time = trigger_.fired() ? in_digits(report_.duration_s(), "%7.1f s") : "  waits";
+    const std::string time = trigger_.fired()   ? in_digits(report_.duration_s(), "%7.1f s")
+                             : trigger_.armed() ? "  waits"
+                                                : "  moves";
     line_.draw(report_.take.name + time, meter_.levels(), hooks_.shows ? hooks_.shows() : "");
   }
   [[nodiscard]] take_report finish() {
@@ -120,6 +123,17 @@ private:
   void problem(const std::string& what) {
     line_.say((report_.frames > 0 ? "at " + in_digits(report_.duration_s(), "%.4f") + " s: " : "") + what);
     if (report_.problems.size() < 1000) report_.problems.push_back(what);
+  }
+  /// Once, where nothing can trigger because it is never at rest.
+  void tell_unrest(std::size_t frames) {
+    constexpr double patience_s = 5;
+    if (trigger_.armed()) return;
+    const double before = static_cast<double>(std::exchange(unarmed_, unarmed_ + frames)) / report_.format.sample_rate_Hz,
+                 now = static_cast<double>(unarmed_) / report_.format.sample_rate_Hz;
+    if (before < patience_s && now >= patience_s)
+      line_.say("waits for rest: a channel departs from its mean by " + in_digits(trigger_.unrest(), "%.3f") +
+                " of full scale; the trigger is armed once all stay within " + in_digits(how_.trigger.threshold / 2, "%.3f") +
+                ", half of --trigger");
   }
   [[nodiscard]] bool asked_to_end() {
     if (stopped()) return true;
@@ -197,7 +211,7 @@ private:
   rig_file_writer* files_;
   const recorder_hooks& hooks_;
   take_report report_;
-  std::uint64_t most_ = 0;
+  std::uint64_t most_ = 0, unarmed_ = 0;
   rosin::level_meter meter_;
   rosin::level_trigger trigger_;
   std::optional<rosin::take_file<>> file_;

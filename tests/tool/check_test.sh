@@ -60,4 +60,15 @@ says "broken/rig.toml:16: take \"pluck-1\".file: broken/pluck-1.wav: truncated: 
 expect 2 check broken --json
 says '"errors": [' "truncated"
 no_messages
+
+# headers that do not tell the length are read to the end; others are refused in words
+make_rig lengths
+perl -pi -e 'BEGIN { binmode STDIN; $/ = undef } substr($_, 40, 4) = pack("V", 0)' lengths/pluck-1.wav
+perl -pi -e 'BEGIN { $/ = undef } substr($_, 40, 4) = pack("V", 0x7ffff000)' lengths/pluck-2.wav
+expect 0 check lengths
+says "0 error(s), 0 warning(s)" "note: lengths/pluck-1.wav: its header does not tell how long it is" "note: lengths/pluck-2.wav: its header"
+perl -pi -e 'BEGIN { $/ = undef } substr($_, 24, 4) = pack("V", 0)' lengths/pluck-1.wav
+perl -pi -e 'BEGIN { $/ = undef } $_ .= "data" . pack("V", 4) . "abcd"' lengths/quiet.wav
+expect 2 check lengths
+says "lengths/pluck-1.wav: its header says 0 samples a second" "lengths/quiet.wav: holds two chunks of samples"
 finish

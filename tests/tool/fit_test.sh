@@ -52,6 +52,21 @@ says "no pluck to calibrate from"
 expect 2 fit absent
 expect 2 fit
 
+# plucks that begin after their release: no advice on polarity and channels; what rings is used, and what cannot be known is said
+cp -r rig late
+for n in 1 2 3; do
+  perl -e 'open my $f, "<:raw", $ARGV[0]; local $/; my $b = <$f>; my $skip = 4 * int(0.0115 * unpack("V", substr $b, 24, 4));
+    print substr($b, 0, 40), pack("V", length($b) - 44 - $skip), substr($b, 44 + $skip)' "rig/pluck-$n.wav" >"late/pluck-$n.wav"
+done
+expect 1 check late
+says "begins after the release" "cannot be told from it"
+is_silent_about "polarity of this channel"
+is_silent_about "swapped"
+expect 1 fit late --json late.json
+says "no pluck holds its release" "polarity, order of the channels, place of the contact" "pitch, stiffness and loss"
+near "pitch of what rings" "$(field late.json results.0.fundamental_Hz.value)" 240.31 0.02
+expect 2 fit late --emit-header late.hpp
+
 # single channels
 mkdir pickup && cp rig/pluck-1.wav pickup
 cat >pickup/rig.toml <<'TOML'

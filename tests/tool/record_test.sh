@@ -75,6 +75,17 @@ same "$(grep -c '^\[\[take\]\]' rig/rig.toml)" "$takes"
 expect 0 record rig --source - --bare --take late --kind pluck --wire 1 --trigger 0.2 --before 0.01 --seconds 0.2 <late
 says "late: 0.200 s"
 
+# The ringing of one take does not trigger the next; what comes after half a second of rest does.
+{ cat late; for _ in $(seq 32); do head -c 3000 late; done; cat late; } >twice
+expect 0 record rig --source - --bare --kind pluck --wire 1 --trigger 0.02 --before 0.01 --seconds 0.05 --count 2 <twice
+says "pluck-3: 0.050 s" "pluck-4: 0.050 s"
+expect 1 record rig --source - --bare --kind pluck --wire 1 --trigger 0.02 --before 0.01 --seconds 0.05 --count 2 <late
+says "pluck-5: 0.050 s" "the source ended before the trigger was reached"
+expect 0 check rig
+is_silent_about "begins after"
+expect 0 record rig --source - --bare --take short --kind pluck --wire 1 --trigger 0.2 --before 0.001 --seconds 0.2 <late
+says "--before 0.001 s is less than two periods of the string"
+
 # A harmed line: every missing frame is in a gap that the rig file tells of; all others are in their place.
 start_rig() {
   rm -f ready.txt

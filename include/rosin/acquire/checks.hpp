@@ -92,11 +92,14 @@ template <class = void>
 void check_force_pluck(take_check& out, const pluck_view& view) {
   pluck_steps steps;
   if (!check_steps(out, view, steps)) return;
-  out.release_s = release_time(view, steps);
-  check_step(out, view, "near", steps.near);
-  check_step(out, view, "far", steps.far);
-  const bool levels = check_coupling(out, view, steps);
-  if (!out.found("inverted-channel")) check_order(out, view, steps, levels);
+  const bool whole = check_lead(out, view, steps);
+  const bool levels = whole && check_coupling(out, view, steps);
+  if (whole) {
+    out.release_s = release_time(view, steps);
+    check_step(out, view, "near", steps.near);
+    check_step(out, view, "far", steps.far);
+    if (!out.found("inverted-channel")) check_order(out, view, steps, levels);
+  }
   std::optional<double> as_declared_Hz;
   for (const auto& [name, step] : {std::pair{"near", &steps.near}, std::pair{"far", &steps.far}}) {
     const auto& s = *view.signals->find(name);
@@ -105,10 +108,10 @@ void check_force_pluck(take_check& out, const pluck_view& view) {
     if (!check_length(out, view, s, start)) continue;
     if (check_ringing(out, view, s, start)) as_declared_Hz = out.pitch_Hz;
     check_tail_hum(out, view, s, start);
-    const std::size_t lead_in = step->frame - std::min(step->frame, start - step->frame);
-    if (lead_in > 32)
+    const std::size_t at_rest = step->frame - std::min(step->frame, start - step->frame);
+    if (whole && at_rest > 32)
       for (auto& c : out.channels)
-        if (c.channel == name) c.noise_rms = noise_in(s.values, lead_in);
+        if (c.channel == name) c.noise_rms = noise_in(s.values, at_rest);
   }
   if (as_declared_Hz) doubt_other_pitch(out, *as_declared_Hz);
 }

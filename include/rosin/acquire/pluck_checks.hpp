@@ -5,6 +5,10 @@
 // beta < 1/2: t_near - t_far = (2 beta - 1) / (2 f0). Before that they stand at F (1 - beta) and F beta. So an inverted
 // channel steps upwards; with swapped channels both the order of arrival and the ratio of the levels belong to 1 - beta.
 //
+// All of that is about the first step. In the ringing, too, either end steps twice a period, now up, now down: a take that begins in
+// there has a first step that tells nothing of polarity, order or level. What proves a release is a period in which nothing moves
+// before the first one.
+//
 #pragma once
 
 #include <rosin/acquire/release.hpp>
@@ -35,14 +39,71 @@ struct pluck_steps {
   return sum / static_cast<double>(end);
 }
 
+/// The step against the wire's force, both tolerances allowed for.
+[[nodiscard]] inline bool scale_is_wrong(const pluck_view& view, const std::string& channel, const step_arrival& step) {
+  const double tolerance = 0.25 + gain_tolerance_of(*view.from->channel(channel)) + force_tolerance_of(*view.what);
+  const double force = view.what->force_N.value_or(0), ratio = std::abs(step.height) / force;
+  return force > 0 && (ratio > 1 + tolerance || ratio < 1 / (1 + tolerance));
+}
+
+/// What the recording holds of the time before the release.
+enum class lead_in { none, short_one, enough };
+
+/// A stretch of one period before the step, and before what runs ahead of it, in which nothing moves: no ringing has one.
+[[nodiscard]] inline bool at_rest_before(const std::vector<double>& x, const step_arrival& step, double period) {
+  constexpr double ahead = 0.25, least = 0.15;  // periods; of the step: plucked at 0.03 of its length a string rings with 0.17
+  const auto end = static_cast<std::ptrdiff_t>(static_cast<double>(step.frame) - ahead * period),
+             begin = end - static_cast<std::ptrdiff_t>(period);
+  if (begin < 0) return false;
+  double mean = 0, square = 0;
+  for (auto i = begin; i < end; ++i) mean += x[static_cast<std::size_t>(i)] / static_cast<double>(end - begin);
+  for (auto i = begin; i < end; ++i)
+    square += std::pow(x[static_cast<std::size_t>(i)] - mean, 2) / static_cast<double>(end - begin);
+  return std::sqrt(square) < least * std::abs(step.height);
+}
+
+/// Less than `least` periods at rest are too few for the level that was held. Less than one period does not prove a release: it has to
+/// look like one at the declared place, at least.
+[[nodiscard]] inline lead_in lead_of(const pluck_view& view, const pluck_steps& steps) {
+  constexpr double least = 0.3, aside = 0.06;  // periods; of the length
+  const double period = view.signals->sample_rate_Hz / view.fundamental_Hz;
+  if (at_rest_before(view.signals->near_N(), steps.near, period) || at_rest_before(view.signals->far_N(), steps.far, period))
+    return lead_in::enough;
+  const double near = static_cast<double>(steps.near.frame) / period, far = static_cast<double>(steps.far.frame) / period;
+  const auto declared = view.from->position_of(*view.what);
+  const bool downwards = steps.near.height < 0 && steps.far.height < 0;
+  const bool whole =
+      std::max(near, far) < 1.5 && !scale_is_wrong(view, "near", steps.near) && !scale_is_wrong(view, "far", steps.far);
+  const bool in_place = !declared || std::abs(0.5 + near - far - *declared) < aside;
+  return whole && downwards && in_place && std::min(near, far) > least ? lead_in::short_one : lead_in::none;
+}
+
+/// True if the steps can be judged.
+inline bool check_lead(take_check& out, const pluck_view& view, const pluck_steps& steps) {
+  const double first = view.signals->time_s(std::min(steps.near.frame, steps.far.frame));
+  const std::string advice = "keep more of the time before the release (rosin record --before)";
+  const lead_in lead = lead_of(view, steps);
+  if (lead == lead_in::none)
+    out.add(severity::error, "begins-late", "", 0, first,
+            "begins after the release, or a fraction of a period before it: the ends move " + figure(1e3 * first) +
+                " ms after the beginning, a period is " + figure(1e3 / view.fundamental_Hz) +
+                " ms; polarity, order of the channels, gains and place cannot be told from it",
+            advice);
+  else if (lead == lead_in::short_one)
+    out.add(severity::warning, "short-lead", "", 0, first,
+            "only " + figure(1e3 * first) +
+                " ms before the release are recorded, less than a period: that it is the release, and no " +
+                "later return of it, cannot be told",
+            advice);
+  return lead != lead_in::none;
+}
+
 inline void check_step(take_check& out, const pluck_view& view, const std::string& channel, const step_arrival& step) {
   const double t = view.signals->time_s(step.frame), force = view.what->force_N.value_or(0);
   if (step.height > 0)
     out.add(severity::error, "inverted-channel", channel, t, t, "the release steps upwards by " + figure(step.height) + " N",
             "turn the polarity of this channel round (both: the take was plucked against the way the bow moves)");
-  const double tolerance = 0.25 + gain_tolerance_of(*view.from->channel(channel)) + force_tolerance_of(*view.what);
-  const double ratio = std::abs(step.height) / force;
-  if (force > 0 && (ratio > 1 + tolerance || ratio < 1 / (1 + tolerance)))
+  if (scale_is_wrong(view, channel, step))
     out.add(severity::warning, "wrong-scale", channel, t, t,
             "the release steps by " + figure(std::abs(step.height)) + " N, force_N is " + figure(force),
             "check newtons_per_full_scale, force_N and whether the wire broke at once");

@@ -3,7 +3,9 @@
 //
 // Waits for something to happen on the string and then gives everything, beginning some time before: a breaking wire cannot be
 // announced. A channel triggers when it departs from its own slow mean by more than a threshold, so that neither the static force
-// of a string that is being deflected nor a sensor's offset sets it off.
+// of a string that is being deflected nor a sensor's offset sets it off. It is armed at rest only: once all channels have stayed
+// within half of the threshold for three time constants of the mean, twelve where they did not at first. A string that still rings
+// from the take before is not at rest.
 //
 #pragma once
 
@@ -30,6 +32,10 @@ public:
         settling_{static_cast<std::uint64_t>(3 * s.follows_s * f.sample_rate_Hz)}, fired_{!(s.threshold > 0)} {}
 
   [[nodiscard]] bool fired() const noexcept { return fired_; }
+  /// It has been at rest, so that what happens now is what is waited for.
+  [[nodiscard]] bool armed() const noexcept { return fired_ || calm_ > (unrest_ > 0 ? 4 : 1) * settling_; }
+  /// The last departure that kept it from being armed; 0: there was none.
+  [[nodiscard]] double unrest() const noexcept { return unrest_; }
   /// Frames from the first one given to the one that triggered.
   [[nodiscard]] std::size_t lead() const noexcept { return lead_; }
 
@@ -52,22 +58,26 @@ public:
 
 private:
   [[nodiscard]] bool departs(std::span<const double> frame) noexcept {
-    bool out = false;
+    double most = 0;
     for (std::size_t c = 0; c < width_; ++c) {
-      if (seen_ == 0) mean_[c] = frame[c];
-      out = out || std::abs(frame[c] - mean_[c]) > settings_.threshold;
+      if (!begun_) mean_[c] = frame[c];
+      most = std::max(most, std::abs(frame[c] - mean_[c]));
       mean_[c] += follow_ * (frame[c] - mean_[c]);
     }
-    return ++seen_ > settling_ && out;
+    begun_ = true;
+    if (armed()) return most > settings_.threshold;
+    if (most > settings_.threshold / 2) calm_ = 0, unrest_ = most;
+    else ++calm_;
+    return false;
   }
 
   trigger_settings settings_;
   std::size_t width_;
   std::vector<double> mean_, kept_;
   std::size_t room_, lead_ = 0;
-  double follow_;
-  std::uint64_t settling_, seen_ = 0;
-  bool fired_;
+  double follow_, unrest_ = 0;
+  std::uint64_t settling_, calm_ = 0;  ///< frames
+  bool begun_ = false, fired_;
 };
 
 }  // namespace rosin

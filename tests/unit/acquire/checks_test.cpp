@@ -63,6 +63,45 @@ TEST_CASE("swapped channels, DC and AC coupled") {
   }
 }
 
+TEST_CASE("a take that begins after the release is recognised before anything is said of polarity, order, gains or place") {
+  for (const double position : {0.1, 0.2, 0.35, 0.5, 0.8})
+    for (const int late : {3, 10, 20, 31, 50, 64, 80, 100, 120, 139, 290, 2000})  // a period is 145 samples
+      for (const int turned : {0, 1, 2}) {
+        CAPTURE(position);
+        CAPTURE(late);
+        CAPTURE(turned);
+        test::pluck p;
+        p.position = position;
+        const auto r = test::two_force_rig(p);
+        auto x = test::pluck_forces(p);
+        for (auto& channel : x)
+          channel.erase(channel.begin(), channel.begin() + late + static_cast<int>(p.release_s * p.rate_Hz));
+        if (turned == 1)
+          for (auto& channel : x)
+            for (double& v : channel) v = -v;
+        if (turned == 2) std::swap(x[0], x[1]);
+        const auto c = rosin::check_take(r, r.takes[0], test::signals(r, p, x));
+        CHECK((c.found("begins-late") || c.found("short-lead")));
+        for (const char* kind :
+             {"inverted-channel", "swapped-channels", "wrong-position", "wrong-scale", "undeclared-ac-coupling"})
+          CHECK_FALSE(c.found(kind));
+        CHECK(c.pitch_Hz);
+      }
+}
+
+TEST_CASE("less than a period before the release is said; a fraction of it is too little") {
+  for (const auto& c :
+       {std::pair{5, "begins-late(:error) "}, {20, "begins-late(:error) "}, {90, "short-lead(:warning) "}, {160, ""}}) {
+    const int lead = c.first;
+    CAPTURE(lead);
+    test::pluck p;
+    const auto r = test::two_force_rig(p);
+    auto x = test::pluck_forces(p);
+    for (auto& channel : x) channel.erase(channel.begin(), channel.begin() + static_cast<int>(p.release_s * p.rate_Hz) - lead);
+    CHECK(kinds(rosin::check_take(r, r.takes[0], test::signals(r, p, x))) == c.second);
+  }
+}
+
 TEST_CASE("inverted channels are named, one or both") {
   test::pluck p;
   p.far_gain = -1;

@@ -39,6 +39,20 @@ TEST_CASE("levels before the release and its time at the string") {
   CHECK(rosin::detail::release_time(view, found.steps) == test::approx(p.release_s).epsilon(2e-3));
 }
 
+TEST_CASE("a stretch without a step that is longer than a period proves a release") {
+  const test::pluck p;
+  const auto r = test::two_force_rig(p);
+  const auto s = test::pluck_signals(r, p);
+  auto steps = steps_of(r, s).steps;
+  const rosin::detail::pluck_view view{&r, &r.takes[0], &s, p.fundamental_Hz, 0};
+  CHECK(lead_of(view, steps) == rosin::detail::lead_in::enough);
+  const std::size_t cut = steps.near.frame - 100;  // of 145 samples in a period
+  steps.near.frame -= cut, steps.far.frame -= cut;
+  CHECK(lead_of(view, steps) == rosin::detail::lead_in::short_one);
+  steps.far.height = -steps.far.height;
+  CHECK(lead_of(view, steps) == rosin::detail::lead_in::none);
+}
+
 TEST_CASE("a channel that does not step by a fifth of the force holds no release") {
   test::pluck p;
   p.far_gain = 0.05;

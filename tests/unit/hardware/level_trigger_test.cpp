@@ -39,3 +39,22 @@ TEST_CASE("an offset and noise below the threshold do not set it off; with no th
   rosin::level_trigger open{{48000, 1, 16}, {}};
   CHECK(open.push(frames).size() == frames.size());
 }
+
+TEST_CASE("it is armed at rest only: neither the ringing of the take before nor its beats set it off, the next release does") {
+  rosin::level_trigger trigger{{48000, 1, 16}, {.threshold = 0.05, .before_s = 0.01}};
+  std::vector<double> frames(5 * 48000);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double t = static_cast<double>(i) / 48000, since = t - 4;
+    const double beats = 0.6 + 0.4 * std::cos(2 * 3.14159265 * 3 * t);
+    frames[i] = 0.4 * beats * std::exp(-t / 0.5) * std::sin(2 * 3.14159265 * 110 * t);
+    frames[i] += since < 0 ? 0.3 : 0.3 * std::cos(2 * 3.14159265 * 110 * since);
+  }
+  const std::size_t before = 48000;
+  CHECK(trigger.push(std::span{frames}.first(before)).empty());
+  CHECK_FALSE(trigger.armed());
+  CHECK(trigger.unrest() > 0.025);
+  const auto taken = trigger.push(std::span{frames}.subspan(before));
+  REQUIRE(trigger.fired());
+  CHECK(trigger.lead() == 480);
+  CHECK(static_cast<double>(taken.size()) == doctest::Approx(48000 + 480).epsilon(0.002));
+}
