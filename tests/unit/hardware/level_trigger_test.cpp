@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <rosin/hardware/level_trigger.hpp>
 
+#include "support/approx.hpp"
+
 #include <doctest/doctest.h>
 
 #include <random>
@@ -56,5 +58,5 @@ TEST_CASE("it is armed at rest only: neither the ringing of the take before nor 
   const auto taken = trigger.push(std::span{frames}.subspan(before));
   REQUIRE(trigger.fired());
   CHECK(trigger.lead() == 480);
-  CHECK(static_cast<double>(taken.size()) == doctest::Approx(48000 + 480).epsilon(0.002));
+  CHECK(static_cast<double>(taken.size()) == test::approx(48000 + 480).epsilon(0.002));
 }
