@@ -14,7 +14,10 @@
 #ifndef ROSIN_INSTANTIATE_AS
 #define ROSIN_INSTANTIATE_AS extern
 #endif
-#define ROSIN_INSTANTIATE(...) ROSIN_INSTANTIATE_AS template __VA_ARGS__;
+#ifndef ROSIN_INSTANTIATE_EXPORT  // an attribute, where the library is a shared one that hides everything else
+#define ROSIN_INSTANTIATE_EXPORT
+#endif
+#define ROSIN_INSTANTIATE(...) ROSIN_INSTANTIATE_AS template ROSIN_INSTANTIATE_EXPORT __VA_ARGS__;
 #else
 #define ROSIN_INSTANTIATE(...)
 #endif
