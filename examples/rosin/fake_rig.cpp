@@ -134,7 +134,10 @@ class rehearsal {
 public:
   rehearsal(fake_player player, std::unique_ptr<named_line> line, std::unique_ptr<named_line> sled, const fake_rig_options& given)
       : player_{std::move(player)}, line_{std::move(line)}, sled_line_{std::move(sled)}, converter_{player_, line_->device(),
-                                                                                                    given} {}
+                                                                                                    given} {
+    sled_.settings[22] = given.homing_s > 0 ? 1 : 0;
+    sled_.home_s = given.homing_s;
+  }
 
   [[nodiscard]] std::optional<rosin::failure> until(double time_s) {
     while (const auto name = fingers_.next())
@@ -152,7 +155,7 @@ private:
     const int before = sled_.strokes();
     const std::string answer = sled_.receive({reinterpret_cast<const char*>(bytes.data()), got.bytes}, time_s);
     if (sled_.strokes() > before && !player_.bow()) std::cerr << "rosin: all bowed takes have been played" << std::endl;
-    return sled_line_->device().write(answer);
+    return sled_line_->device().write(answer, std::chrono::milliseconds{500});
   }
 
   fake_player player_;
@@ -252,6 +255,9 @@ void add_fake_rig(CLI::App& app, exit_code& result) {
   command->add_option("--line", given->line, "Name for the serial line on which the frames come")->required()->type_name("PATH");
   command->add_option("--sled", given->sled, "Name for the serial line of the sled; each stroke plays the next bowed take")
       ->type_name("PATH");
+  command->add_option("--homing", given->homing_s, "The sled has a home switch, and needs so long to find it")
+      ->type_name("S")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--loop", given->loop, "This take, again and again without a gap")->type_name("TAKE");
   command->add_option("--harm", given->harm, "Share of the packets that get lost, cut, corrupted or doubled")
       ->check(CLI::Range(0.0, 1.0))

@@ -20,7 +20,7 @@ namespace tool {
 
 struct fake_rig_options {
   std::string rig, line, sled, loop;
-  double harm = 0, seconds = 0;
+  double harm = 0, seconds = 0, homing_s = 0;
   int packet_frames = 64;
 };
 

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "frame_input.hpp"
 
+#include "recorder.hpp"
+
 #include <rosin/adapt/frames_sndfile.hpp>
 #include <rosin/hardware/paced_source.hpp>
 #include <rosin/hardware/serial_source.hpp>
 
 #include <unistd.h>
+
+#include <future>
+#include <thread>
 
 namespace tool {
 
@@ -25,7 +30,8 @@ rosin::outcome<frame_input> paced(rosin::outcome<rosin::sndfile_source> from, do
 rosin::outcome<frame_input> open_serial(const std::string& device, const input_options& given) {
   auto link = rosin::byte_link::open(device, given.baud);
   if (!link) return rosin::failure{link.error()};
-  auto from = rosin::serial_source::open(*std::move(link), std::chrono::milliseconds{static_cast<int>(given.patience_s * 1000)});
+  auto from = rosin::serial_source::open(*std::move(link), std::chrono::milliseconds{static_cast<int>(given.patience_s * 1000)},
+                                         stop_flag());
   if (!from) return rosin::failure{from.error()};
   return frame_input{*std::move(from)};
 }
@@ -39,9 +45,7 @@ rosin::outcome<frame_input> open_serial(const std::string& device, const input_o
   return out;
 }
 
-}  // namespace
-
-rosin::outcome<frame_input> open_input(const input_options& given) {
+rosin::outcome<frame_input> open_now(const input_options& given) {
   const rosin::frame_format wanted{given.rate_Hz, given.channels, given.bits, given.float_format, true};
   const std::string& s = given.source;
   if (s == "-")
@@ -58,6 +62,19 @@ rosin::outcome<frame_input> open_input(const input_options& given) {
   if (s.starts_with("jack:")) return not_built(s, "libjack-jackd2-dev");
 #endif
   return paced(rosin::sndfile_source::open(s.starts_with("file:") ? s.substr(5) : s), given.faster);
+}
+
+}  // namespace
+
+/// A pipe's header, or a sound card that others use, may be waited for without end; Ctrl-C ends that, too: the thread that waits
+/// is left behind.
+rosin::outcome<frame_input> open_input(const input_options& given) {
+  auto promise = std::make_shared<std::promise<rosin::outcome<frame_input>>>();
+  auto made = promise->get_future();
+  std::thread{[promise, given] { promise->set_value(open_now(given)); }}.detach();
+  while (made.wait_for(std::chrono::milliseconds{20}) != std::future_status::ready)
+    if (stopped()) return rosin::failure{given.source + ": stopped before a frame came"};
+  return made.get();
 }
 
 void add_input_options(CLI::App& command, input_options& given) {

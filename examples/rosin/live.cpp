@@ -120,7 +120,12 @@ exit_code run(const live_request& given) {
   if (!moves) return fail(moves.error(), as_json);
   for (const auto& line : chain->remarks()) std::cerr << "rosin: " << line << '\n';
   live_state state;
-  const take_report report = from.record(take, files ? &*files : nullptr, hooks_of(*chain, *moves, files.has_value(), state));
+  if (*moves) from.skip();  // what came while the sled was made ready
+  take_report report = from.record(take, files ? &*files : nullptr, hooks_of(*chain, *moves, files.has_value(), state));
+  if (const std::string problem = *moves ? (*moves)->stop() : ""; !problem.empty()) {
+    std::cerr << "rosin: " << problem << '\n';
+    report.problems.push_back(problem);
+  }
   return tell(given, from, report, *chain, state);
 }
 

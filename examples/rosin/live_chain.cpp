@@ -2,6 +2,7 @@
 #include "live_chain.hpp"
 
 #include "digits.hpp"
+#include "recorder.hpp"
 
 #include <rosin/hardware/csv_sink.hpp>
 #include <rosin/hardware/take_file.hpp>
@@ -36,7 +37,8 @@ rosin::outcome<rosin::band> band_of(const live_options& how, double rate_Hz) {
 
 rosin::outcome<frame_output> open_output(const std::string& path, bool force, double rate_Hz,
                                          const std::vector<std::string>& names) {
-  if (path == "-") return output_of(rosin::csv_sink{rosin::byte_link{::dup(STDOUT_FILENO), "standard output"}, rate_Hz, names});
+  if (path == "-")
+    return output_of(rosin::csv_sink{rosin::byte_link{::dup(STDOUT_FILENO), "standard output"}, rate_Hz, names, stop_flag()});
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) {
     if (!force) return rosin::failure{path + ": exists already; --force overwrites it"};

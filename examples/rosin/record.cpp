@@ -75,7 +75,12 @@ std::optional<rosin::failure> record_all(const options& given, rig_file_writer& 
       hooks.over = [&](double) { return moves->over(); };
       hooks.shows = [&] { return moves->shows(); };
     }
+    if (moves) from.skip();  // what came while the sled was made ready
     out.push_back(from.record(take, &files, hooks));
+    if (const std::string bad = moves ? moves->stop() : ""; !bad.empty()) {
+      std::cerr << "rosin: " << bad << '\n';
+      out.back().problems.push_back(bad);
+    }
     if (!given.json) std::cout << summary_of(out.back()) << std::endl;
   }
   return std::nullopt;

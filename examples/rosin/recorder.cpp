@@ -296,6 +296,7 @@ void stop_on_signals() {
   for (const int s : {SIGPIPE, SIGXFSZ}) std::signal(s, SIG_IGN);  // write() says it
 }
 bool stopped() noexcept { return stop_asked; }
+const std::atomic<bool>* stop_flag() noexcept { return &stop_asked; }
 
 std::uint64_t resident_bytes() {
   std::ifstream in{"/proc/self/statm"};

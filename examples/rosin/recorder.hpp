@@ -13,6 +13,7 @@
 #include <rosin/hardware/level_trigger.hpp>
 #include <rosin/hardware/take_file.hpp>
 
+#include <atomic>
 #include <functional>
 
 namespace tool {
@@ -67,6 +68,8 @@ public:
   [[nodiscard]] rosin::frame_format format() const noexcept { return from_.format(); }
   /// One take. `files` null: nothing is written.
   [[nodiscard]] take_report record(const take_plan& take, rig_file_writer* files, const recorder_hooks& hooks = {});
+  /// What came before now belongs to no take, unless the source is a file or a pipe.
+  void skip() { from_.skip(); }
   [[nodiscard]] double fullest_buffer() const noexcept { return from_.fullest(); }
 
 private:
@@ -77,6 +80,8 @@ private:
 /// Ctrl-C and SIGTERM end the take as --seconds would.
 void stop_on_signals();
 [[nodiscard]] bool stopped() noexcept;
+/// The same, for waits of the library.
+[[nodiscard]] const std::atomic<bool>* stop_flag() noexcept;
 
 /// Memory of this program that is in use, bytes.
 [[nodiscard]] std::uint64_t resident_bytes();

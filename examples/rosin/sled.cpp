@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sled.hpp"
 
+#include "recorder.hpp"
+
+#include <cmath>
 #include <cstdio>
 
 namespace tool {
@@ -9,11 +12,10 @@ struct sled::shared {
   shared(rosin::grbl_stage s, rosin::stroke w, double rest) : stage{std::move(s)}, way{w}, rest_s{rest} {}
 
   void run(const std::stop_token& stop) {
-    const auto started = stage.start(way);
-    if (started) return end(started->message);
-    while (!stop.stop_requested()) {
+    if (const auto bad = stage.start(way)) return end_held(bad->message);
+    while (!stop.stop_requested() && !stopped()) {
       const auto now = stage.status();
-      if (!now) return end(now.error());
+      if (!now) return end_held(now.error());
       {
         const std::scoped_lock lock{mutex};
         latest = *now;
@@ -22,7 +24,14 @@ struct sled::shared {
       if (now->state == rosin::motion_state::idle) return end("");
       std::this_thread::sleep_for(std::chrono::milliseconds{10});
     }
-    if (const auto bad = stage.stop()) end(bad->message);
+    end_held("");
+  }
+  /// Whatever happened, the sled is not left running.
+  void end_held(const std::string& why) {
+    const auto bad = stage.stop(std::chrono::milliseconds{600});
+    end(stopped() ? "" : why);
+    const std::scoped_lock lock{mutex};
+    if (bad && why.empty()) late = bad->message;
   }
   void end(const std::string& why) {
     const std::scoped_lock lock{mutex};
@@ -35,7 +44,7 @@ struct sled::shared {
   double rest_s;
   std::mutex mutex;
   rosin::motion_status latest;
-  std::string problem;
+  std::string problem, late;  ///< late: of stopping, when the take is over
   std::optional<std::chrono::steady_clock::time_point> finished;
   std::jthread thread;
 };
@@ -48,12 +57,12 @@ sled& sled::operator=(sled&&) noexcept = default;
 rosin::outcome<sled> sled::open(const sled_options& given, double speed_m_s) {
   auto link = rosin::byte_link::open(given.device, given.baud);
   if (!link) return rosin::failure{link.error()};
-  auto stage = rosin::grbl_stage::open(*std::move(link));
+  auto stage = rosin::grbl_stage::open(*std::move(link), std::chrono::seconds{3}, stop_flag());
   if (!stage) return rosin::failure{stage.error()};
   if (given.unlock)
     if (const auto bad = stage->unlock()) return *bad;
   if (given.home)
-    if (const auto bad = stage->home()) return *bad;
+    if (const auto bad = stage->home(std::chrono::duration<double>{given.home_s})) return *bad;
   const rosin::stroke way{given.distance_m, speed_m_s, given.acceleration_m_s2};
   if (const auto bad = stage->refused(way)) return *bad;
   return sled{std::make_unique<shared>(*std::move(stage), way, given.rest_s)};
@@ -74,14 +83,17 @@ std::optional<std::string> sled::over() {
 std::string sled::shows() const {
   const std::scoped_lock lock{state_->mutex};
   std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "sled %.0f mm %.3f m/s", 1e3 * state_->latest.position_m, state_->latest.speed_m_s);
+  const auto& now = state_->latest;
+  if (std::isnan(now.speed_m_s)) std::snprintf(text.data(), text.size(), "sled %.0f mm", 1e3 * now.position_m);
+  else std::snprintf(text.data(), text.size(), "sled %.0f mm %.3f m/s", 1e3 * now.position_m, now.speed_m_s);
   return text.data();
 }
 
-void sled::stop() {
-  if (!state_ || !state_->thread.joinable()) return;
+std::string sled::stop() {
+  if (!state_ || !state_->thread.joinable()) return {};
   state_->thread.request_stop();
   state_->thread.join();
+  return state_->late;
 }
 
 void add_sled_options(CLI::App& command, sled_options& given) {
@@ -99,7 +111,11 @@ void add_sled_options(CLI::App& command, sled_options& given) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command.add_option("--sled-baud", given.baud, "Speed of its serial line")->capture_default_str();
-  command.add_flag("--home", given.home, "Look for the home switch first");
+  command.add_flag("--home", given.home, "Look for the home switch first; the take begins after that");
+  command.add_option("--home-seconds", given.home_s, "The homing may take so long")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command.add_flag("--unlock", given.unlock, "End an alarm first: you have looked, and the way is free");
 }
 

@@ -18,13 +18,14 @@ struct sled_options {
   std::string device;
   double distance_m = 0, acceleration_m_s2 = 2, rest_s = 0.1;
   int baud = 115200;
+  double home_s = 120;  ///< homing may take so long
   bool home = false, unlock = false;
 };
 void add_sled_options(CLI::App& command, sled_options& given);
 
 class sled {
 public:
-  /// Wakes it up and looks whether the stroke can be made, without moving.
+  /// Wakes it up, homes it if that is asked for, and looks whether the stroke can be made.
   [[nodiscard]] static rosin::outcome<sled> open(const sled_options& given, double speed_m_s);
 
   /// Returns at once.
@@ -32,8 +33,8 @@ public:
   /// Once the stroke is over and a rest has passed: "" or what went wrong.
   [[nodiscard]] std::optional<std::string> over();
   [[nodiscard]] std::string shows() const;
-  /// Slows down and stops.
-  void stop();
+  /// Slows down and stops, within a second: "" or what went wrong with that.
+  std::string stop();
   ~sled();
   sled(sled&& other) noexcept;
   sled& operator=(sled&& other) noexcept;

@@ -26,9 +26,9 @@ public:
     if (file.fd() < 0) return failure{path + ": " + std::strerror(errno)};
     return csv_sink{std::move(file), rate_Hz, columns};
   }
-  /// Takes the descriptor over.
-  csv_sink(byte_link to, double rate_Hz, const std::vector<std::string>& columns)
-      : to_{std::move(to)}, rate_Hz_{rate_Hz}, width_{columns.size()} {
+  /// Takes the descriptor over. Whoever reads it may be slow, for at most ten seconds a block, or until `stop` becomes true.
+  csv_sink(byte_link to, double rate_Hz, const std::vector<std::string>& columns, const std::atomic<bool>* stop = nullptr)
+      : to_{std::move(to)}, rate_Hz_{rate_Hz}, width_{columns.size()}, stop_{stop} {
     text_ = "time_s";
     for (const auto& name : columns) text_ += "," + name;
     text_ += '\n';
@@ -54,7 +54,7 @@ private:
     text_.append(form.data(), end.ptr);
   }
   [[nodiscard]] std::optional<failure> flush() {
-    auto bad = to_.write(text_, std::chrono::seconds{10});
+    auto bad = to_.write(text_, deadline{std::chrono::seconds{10}, stop_});
     text_.clear();
     return bad;
   }
@@ -62,6 +62,7 @@ private:
   byte_link to_;
   double rate_Hz_;
   std::size_t width_;
+  const std::atomic<bool>* stop_;
   std::uint64_t frame_ = 0;
   std::string text_;
 };

@@ -19,11 +19,7 @@ class paced_source {
 public:
   explicit paced_source(Source from, double faster = 1) : from_{std::move(from)}, faster_{faster} {}
 
-  [[nodiscard]] frame_format format() const {
-    frame_format out = from_.format();
-    out.live = true;
-    return out;
-  }
+  [[nodiscard]] frame_format format() const { return from_.format(); }
   [[nodiscard]] frame_read read(std::span<double> interleaved, std::chrono::milliseconds patience) {
     using seconds = std::chrono::duration<double>;
     const auto now = std::chrono::steady_clock::now();

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 //
 // Frames from a microcontroller: packets (frame_packet.hpp) over a serial line. The format is what the packets say; a device
-// that changes it in mid-stream has to be opened anew. Corrupted and doubled packets, gaps and restarts are counted.
+// that changes it in mid-stream has to be opened anew. Corrupted and doubled packets, gaps and restarts are counted. A line on
+// which something else talks is told as such; where nothing comes for half a second, a "?" is sent once, which a G-code
+// controller (the sled, when two lines were swapped) answers.
 //
 #pragma once
 
 #include <rosin/hardware/byte_link.hpp>
-#include <rosin/hardware/packet_decoder.hpp>
+#include <rosin/hardware/line_witness.hpp>
 
 #include <algorithm>
 
@@ -15,17 +17,25 @@ namespace rosin {
 
 class serial_source {
 public:
-  /// Waits for the first sound packet.
-  [[nodiscard]] static outcome<serial_source> open(byte_link link, std::chrono::milliseconds patience = std::chrono::seconds{2}) {
+  /// Waits for the first sound packet, for at most `patience` or until `stop` becomes true.
+  [[nodiscard]] static outcome<serial_source> open(byte_link link, std::chrono::milliseconds patience = std::chrono::seconds{2},
+                                                   const std::atomic<bool>* stop = nullptr) {
     serial_source out{std::move(link)};
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    while (!out.current_) {
-      const auto got = out.fetch(std::chrono::milliseconds{20});
+    const deadline until{patience, stop}, quiet{std::min(patience / 2, std::chrono::milliseconds{500})};
+    line_witness witness;
+    for (bool asked = false; !out.current_;) {
+      const auto got = out.fetch(until.slice(), &witness);
       if (out.current_) break;
       if (got.gone) return failure{got.problem};
-      if (std::chrono::steady_clock::now() > deadline)
+      if (until.stopped()) return failure{out.link_.name() + ": stopped before a packet of frames came"};
+      if (until.over() || witness.controller())
         return failure{out.link_.name() + ": no packet of frames came" +
-                       (out.decoder_.counts().corrupted > 0 ? ", only damaged ones" : "")};
+                       (out.decoder_.counts().corrupted > 0 && !witness.controller() ? ", only damaged ones: " : ": ") +
+                       witness.in_words()};
+      if (!asked && quiet.over()) {
+        asked = true;
+        (void)out.link_.write("?", std::chrono::milliseconds{50});
+      }
     }
     out.format_ = out.current_->format;
     return out;
@@ -79,10 +89,11 @@ private:
     current_ = decoder_.next();
     used_ = 0;
   }
-  [[nodiscard]] link_read fetch(std::chrono::milliseconds patience) {
+  [[nodiscard]] link_read fetch(std::chrono::milliseconds patience, line_witness* witness = nullptr) {
     std::array<std::uint8_t, 16384> bytes;
     link_read got = link_.read(bytes, patience);
     decoder_.push(std::span{bytes}.first(got.bytes));
+    if (witness != nullptr) witness->push(std::span{bytes}.first(got.bytes));
     if (!current_) advance();
     return got;
   }

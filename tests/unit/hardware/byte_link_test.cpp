@@ -3,7 +3,11 @@
 
 #include <doctest/doctest.h>
 
+#include <rosin/hardware/pseudo_terminal.hpp>
+
 #include <support/temporary_folder.hpp>
+
+#include <thread>
 
 TEST_CASE("what cannot be opened is named, with the reason") {
   const auto none = rosin::byte_link::open("/nowhere/tty", 115200);
@@ -36,4 +40,34 @@ TEST_CASE("a reader that takes nothing is not waited for without end") {
   const auto why = out.write(std::string(1 << 20, 'x'), std::chrono::milliseconds{30});
   REQUIRE(why);
   CHECK(why->message == "out: takes no bytes");
+}
+
+TEST_CASE("a reader that takes a little now and then does not put the end off; a descriptor that blocks does not block") {
+  std::array<int, 2> ends{};
+  REQUIRE(::pipe(ends.data()) == 0);
+  const rosin::byte_link in{ends[0], "in"}, out{ends[1], "out"};
+  std::jthread slow{[&](const std::stop_token& stop) {
+    std::array<std::uint8_t, 4096> some{};
+    while (!stop.stop_requested()) {
+      (void)in.read(some, std::chrono::milliseconds{1});
+      std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+  }};
+  const auto begin = std::chrono::steady_clock::now();
+  REQUIRE(out.write(std::string(1 << 24, 'x'), std::chrono::milliseconds{200}));
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::milliseconds{900});
+  std::atomic<bool> stop{true};
+  CHECK(out.write(std::string(1 << 24, 'x'), rosin::deadline{std::chrono::seconds{60}, &stop}));
+}
+
+TEST_CASE("a serial line has one user") {
+  auto pair = rosin::pseudo_terminal::open();
+  REQUIRE(pair);
+  auto first = rosin::byte_link::open(pair->path(), 115200);
+  REQUIRE(first);
+  const auto second = rosin::byte_link::open(pair->path(), 115200);
+  REQUIRE_FALSE(second);
+  CHECK(second.error().find("is in use already") != std::string::npos);
+  { const auto gone = *std::move(first); }
+  CHECK(rosin::byte_link::open(pair->path(), 115200));
 }

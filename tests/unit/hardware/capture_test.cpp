@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <memory>
 
 namespace {
 
@@ -63,4 +64,50 @@ TEST_CASE("a live source overruns where nobody listens: said, counted, and what 
   CHECK(frames == 100);
   CHECK(why.find("overrun") != std::string::npos);
   CHECK(from.fullest() > 0.9);
+}
+
+namespace {
+
+/// Never comes back from a read until it is let go.
+struct stuck_source {
+  std::shared_ptr<std::atomic<bool>> free;
+  rosin::frame_format format() const { return {1000, 1, 16, false, false}; }
+  rosin::frame_read read(std::span<double>, std::chrono::milliseconds) {
+    while (!*free) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    return {0, 0, true, {}};
+  }
+};
+/// Gives its own number, a frame a millisecond.
+struct clock_source {
+  bool live = true;
+  double at = 0;
+  rosin::frame_format format() const { return {1000, 1, 16, false, live}; }
+  rosin::frame_read read(std::span<double> out, std::chrono::milliseconds) {
+    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    out[0] = at++;
+    return {1, 0, false, {}};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a source that does not come back is left behind") {
+  const auto free = std::make_shared<std::atomic<bool>>(false);
+  const auto begin = std::chrono::steady_clock::now();
+  { const rosin::capture<stuck_source> from{stuck_source{free}}; }
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::milliseconds{900});
+  *free = true;
+}
+
+TEST_CASE("what a live source gave before may be skipped; what a file gave stays") {
+  for (const bool live : {true, false}) {
+    rosin::capture<clock_source> from{clock_source{live}};
+    std::this_thread::sleep_for(std::chrono::milliseconds{100});
+    from.skip();
+    std::vector<double> block(1000);
+    const auto got = from.read(block, std::chrono::seconds{1});
+    REQUIRE(got.frames > 0);
+    if (live) CHECK(block[0] > 20);
+    else CHECK(block[0] == 0);
+  }
 }

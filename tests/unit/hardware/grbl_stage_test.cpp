@@ -25,7 +25,8 @@ public:
 
   std::mutex mutex;
   rosin::grbl_simulator simulator;
-  std::atomic<bool> silent{false};
+  std::string says_itself;
+  std::atomic<bool> silent{false}, chatter{false};
 
 private:
   void run(const std::stop_token& stop) {
@@ -35,8 +36,10 @@ private:
       const auto got = line_.device().read(bytes, std::chrono::milliseconds{2});
       const std::scoped_lock lock{mutex};
       const std::chrono::duration<double> now = std::chrono::steady_clock::now() - begin;
-      const auto answer = simulator.receive({reinterpret_cast<const char*>(bytes.data()), got.bytes}, now.count());
-      if (!silent && line_.device().write(answer)) return;
+      std::string answer = simulator.receive({reinterpret_cast<const char*>(bytes.data()), got.bytes}, now.count());
+      answer = std::exchange(says_itself, {}) + answer;
+      if (chatter) answer += "[MSG:still here]\r\n";
+      if (!silent && line_.device().write(answer, std::chrono::milliseconds{20})) continue;
     }
   }
   rosin::pseudo_terminal line_;
@@ -123,13 +126,165 @@ TEST_CASE("a limit switch: the alarm is told with its reason, and unlocking is a
   CHECK(reason(stage->start({-0.05, 0.4, 8})).empty());
 }
 
-TEST_CASE("a controller that is dumb, or is none, or goes away") {
+TEST_CASE("a controller that goes dumb, or talks without answering, is waited for no longer than was said") {
   sled_on_a_line sled;
-  auto stage = rosin::grbl_stage::open(sled.link(), std::chrono::milliseconds{200});
+  auto stage = rosin::grbl_stage::open(sled.link(), std::chrono::milliseconds{400});
   REQUIRE(stage.has_value());
-  sled.silent = true;
-  CHECK(says(reason(stage->start({-0.1, 0.4, 4})), "does not answer"));
-  const auto other = rosin::grbl_stage::open(sled.link(), std::chrono::milliseconds{100});
-  REQUIRE_FALSE(other.has_value());
-  CHECK(says(other.error(), "does not answer"));
+  SUBCASE("dumb") {
+    sled.silent = true;
+    CHECK(says(reason(stage->start({-0.1, 0.4, 4})), "does not answer: it says nothing"));
+  }
+  SUBCASE("talks") {
+    {
+      const std::scoped_lock lock{sled.mutex};
+      sled.simulator.settings[22] = 1;
+      sled.simulator.home_s = 1e3;
+    }
+    sled.chatter = true;
+    const auto begin = std::chrono::steady_clock::now();
+    CHECK(says(reason(stage->home(std::chrono::milliseconds{300})), "is busy (homing): no end of it after 0.300 s"));
+    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::milliseconds{900});
+  }
+  SUBCASE("stopped") {
+    std::atomic<bool> stop{false};
+    { const auto gone = *std::move(stage); }
+    auto other = rosin::grbl_stage::open(sled.link(), std::chrono::seconds{60}, &stop);
+    REQUIRE(other.has_value());
+    sled.silent = true;
+    const auto begin = std::chrono::steady_clock::now();
+    std::jthread signal{[&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds{100});
+      stop = true;
+    }};
+    CHECK(says(reason(other->unlock()), "stopped while waiting"));
+    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::milliseconds{900});
+  }
+}
+
+TEST_CASE("what is no controller is told, with what it is, in time, though it never stops talking") {
+  auto pair = rosin::pseudo_terminal::open();
+  REQUIRE(pair);
+  std::string saying;
+  const char* told = "";
+  SUBCASE("nothing") { told = "does not answer: it says nothing (is it switched on"; }
+  SUBCASE("a receiver of satellites") {
+    saying = "$GPGGA,123519,4807.038,N\r\n";
+    told = "this is no G-code controller: something else talks ($GPGGA,123519";
+  }
+  SUBCASE("a digitiser") {
+    rosin::packet_encoder<512> encoder{{.stream = 1, .channels = 2, .bits = 24, .rate_mHz = 128000000}};
+    const std::array<std::int32_t, 128> samples{};
+    saying = std::string(1, '\0');
+    for (int i = 0; i < 3; ++i) saying.append(reinterpret_cast<const char*>(encoder.data()), encoder.encode(samples.data(), 64));
+    told = "packets of frames come, as from a digitiser";
+  }
+  std::jthread device{[&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      if (!saying.empty()) (void)pair->device().write(saying, std::chrono::milliseconds{10});
+      std::this_thread::sleep_for(std::chrono::milliseconds{5});
+    }
+  }};
+  const auto begin = std::chrono::steady_clock::now();
+  const auto stage = rosin::grbl_stage::open(*rosin::byte_link::open(pair->path(), 115200), std::chrono::milliseconds{400});
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::milliseconds{1500});
+  REQUIRE_FALSE(stage.has_value());
+  CHECK(says(stage.error(), told));
+}
+
+TEST_CASE("dialects: greetings, work coordinates with and without their offset, inches, reports that nobody asked for") {
+  rosin::grbl_simulator kind;
+  double end_m = -0.1;
+  bool knows_the_end = true;
+  SUBCASE("GRBL, reports in work coordinates whose offset is told") {
+    kind.reports_work = true;
+    kind.offset_mm = -12.5;
+  }
+  SUBCASE("the same, not told") {
+    kind.reports_work = true;
+    knows_the_end = false;
+  }
+  SUBCASE("in inches") {
+    kind.reports_work = true;
+    kind.offset_mm = -25.4;
+    kind.settings[13] = 1;
+  }
+  SUBCASE("grblHAL, reporting by itself") {
+    kind.greeting = "GrblHAL 1.1f ['$' or '$HELP' for help]";
+    kind.report_every_s = 0.002;
+  }
+  SUBCASE("FluidNC") { kind.greeting = "[MSG:INFO: WiFi on]\r\nGrbl 3.6 [FluidNC v3.6.8 (wifi) '$' for help]"; }
+  sled_on_a_line sled{kind};
+  auto stage = rosin::grbl_stage::open(sled.link());
+  REQUIRE(stage.has_value());
+  if (knows_the_end) CHECK(says(reason(stage->start({-0.41, 0.4, 4})), "outside of -400.000 to 0 mm"));
+  REQUIRE(reason(stage->start({-0.1, 0.4, 8})).empty());
+  REQUIRE(reason(stage->wait(3)).empty());
+  CHECK(stage->status()->position_m == test::approx(end_m).epsilon(2e-4));
+  const std::scoped_lock lock{sled.mutex};
+  CHECK(sled.simulator.position_m() == test::approx(end_m));
+}
+
+TEST_CASE("homing is waited for, however long the silence; a controller that homes already is left in peace") {
+  rosin::grbl_simulator with_switch;
+  with_switch.settings[22] = 1;
+  with_switch.home_s = 0.6;
+  sled_on_a_line sled{with_switch};
+  auto stage = rosin::grbl_stage::open(sled.link(), std::chrono::milliseconds{300});
+  REQUIRE(stage.has_value());
+  CHECK(reason(stage->home()).empty());
+  CHECK(reason(stage->start({-0.1, 0.4, 8})).empty());
+  SUBCASE("moving") {
+    { const auto gone = *std::move(stage); }
+    const auto other = rosin::grbl_stage::open(sled.link(), std::chrono::milliseconds{100});
+    REQUIRE_FALSE(other.has_value());
+    CHECK(says(other.error(), "the sled is busy (it moves)"));
+    CHECK(rosin::grbl_stage::open(sled.link(), std::chrono::seconds{3}).has_value());
+    const std::scoped_lock lock{sled.mutex};
+    CHECK(sled.simulator.position_m() == test::approx(-0.1));
+  }
+}
+
+TEST_CASE("answers that come late or twice, an error that comes alone, a controller that starts anew") {
+  sled_on_a_line sled;
+  auto stage = rosin::grbl_stage::open(sled.link());
+  REQUIRE(stage.has_value());
+  const auto unasked = [&](const std::string& text) {
+    {
+      const std::scoped_lock lock{sled.mutex};
+      sled.says_itself = text;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds{30});
+  };
+  unasked("ok\r\nok\r\n");
+  CHECK(reason(stage->start({-0.1, 0.4, 40})).empty());
+  CHECK(reason(stage->wait(2)).empty());
+  unasked("error:20\r\n");
+  const auto odd = stage->status();
+  REQUIRE_FALSE(odd.has_value());
+  CHECK(says(odd.error(), "error:20 (a command that it does not know)"));
+  unasked("ok\r\nok\r\n");
+  CHECK(says(reason(stage->home()), "$H: error:5 (homing is not enabled)"));
+  unasked("\r\nGrbl 1.1h ['$' for help]\r\n");
+  CHECK(says(reason(stage->start({-0.1, 0.4, 40})), "started anew in the middle"));
+  CHECK(reason(stage->start({-0.1, 0.4, 40})).empty());
+  CHECK(reason(stage->wait(2)).empty());
+}
+
+TEST_CASE("a stop that may not wait for the sled to come to rest leaves it held") {
+  sled_on_a_line sled;
+  auto stage = rosin::grbl_stage::open(sled.link());
+  REQUIRE(stage.has_value());
+  REQUIRE(reason(stage->start({-0.3, 0.4, 0.6})).empty());
+  std::this_thread::sleep_for(std::chrono::milliseconds{500});
+  CHECK(says(reason(stage->stop(std::chrono::milliseconds{100})), "still slowing down"));
+  std::this_thread::sleep_for(std::chrono::milliseconds{700});
+  const auto now = stage->status();
+  REQUIRE(now.has_value());
+  CHECK(now->state == rosin::motion_state::holding);
+  CHECK(now->speed_m_s == 0);
+  { const auto gone = *std::move(stage); }
+  auto again = rosin::grbl_stage::open(sled.link());
+  REQUIRE(again.has_value());
+  CHECK(again->status()->state == rosin::motion_state::idle);
+  CHECK(again->status()->position_m == test::approx(now->position_m));
 }

@@ -22,7 +22,7 @@ struct counter {
 TEST_CASE("frames come when their time has come, all of them, in order") {
   for (const double faster : {1.0, 4.0}) {
     rosin::paced_source<counter> from{counter{}, faster};
-    CHECK(from.format().live);
+    CHECK_FALSE(from.format().live);  // it waits, as the file that it is
     std::vector<double> block(600);
     const auto begin = std::chrono::steady_clock::now();
     double next = 0;

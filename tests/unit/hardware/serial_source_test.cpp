@@ -73,7 +73,7 @@ TEST_CASE("a line without packets, a device that is pulled and one that changes 
   REQUIRE_FALSE(pair->device().write("hello, this is a modem\r\n"));
   const auto none = rosin::serial_source::open(*std::move(link), std::chrono::milliseconds{60});
   REQUIRE_FALSE(none);
-  CHECK(none.error().find("no packet of frames came") != std::string::npos);
+  CHECK(none.error().find("no packet of frames came: something else talks (hello, this is a modem)") != std::string::npos);
 
   link = rosin::byte_link::open(pair->path(), 921600);
   REQUIRE(link);
@@ -101,4 +101,30 @@ TEST_CASE("a line without packets, a device that is pulled and one that changes 
     CHECK(got.ended);
     CHECK(got.problem.find("changed in mid-stream") != std::string::npos);
   }
+}
+
+TEST_CASE("a line on which the sled is, and a wait that somebody ends") {
+  auto pair = rosin::pseudo_terminal::open();
+  REQUIRE(pair);
+  std::atomic<bool> stop{false};
+  const auto begin = std::chrono::steady_clock::now();
+  std::jthread sled{[&](const std::stop_token& over) {
+    std::array<std::uint8_t, 16> bytes{};
+    while (!over.stop_requested()) {
+      const auto got = pair->device().read(bytes, std::chrono::milliseconds{5});
+      if (got.bytes == 1 && bytes[0] == '?') (void)pair->device().write("<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n");
+    }
+  }};
+  SUBCASE("swapped") {
+    const auto none = rosin::serial_source::open(*rosin::byte_link::open(pair->path(), 921600), std::chrono::seconds{10}, &stop);
+    REQUIRE_FALSE(none);
+    CHECK(none.error().find("a G-code controller talks (<Idle|") != std::string::npos);
+  }
+  SUBCASE("stopped") {
+    stop = true;
+    const auto none = rosin::serial_source::open(*rosin::byte_link::open(pair->path(), 921600), std::chrono::seconds{10}, &stop);
+    REQUIRE_FALSE(none);
+    CHECK(none.error().find("stopped before") != std::string::npos);
+  }
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::milliseconds{1500});
 }
