@@ -3,6 +3,12 @@
 
 #include <doctest/doctest.h>
 
+#include <rosin/hardware/grbl_simulator.hpp>
+
+#include <clocale>
+#include <cstdlib>
+#include <support/temporary_folder.hpp>
+
 #include "support/approx.hpp"
 
 TEST_CASE("status reports of GRBL 1.1, as its manual shows them, and of its relatives") {
@@ -43,6 +49,25 @@ TEST_CASE("greetings, and numbers for the controller") {
   for (const char* none : {"grbl", "ok", "", "[MSG:Grbl]", "Marlin 2.1"}) CHECK_FALSE(rosin::is_grbl_greeting(none));
   CHECK(rosin::grbl_number(-40.5) == "-40.500");
   CHECK(rosin::grbl_number(1e300).size() == 305);
+}
+
+TEST_CASE("a program with decimal commas speaks and understands the controller's language all the same") {
+  const test::temporary_folder folder;
+  const std::string path = folder.str();
+  const bool made = std::system(("localedef -i de_DE -f UTF-8 " + path + "/de_DE.UTF-8 >" + path + "/said 2>&1").c_str()) == 0;
+  ::setenv("LOCPATH", path.c_str(), 1);
+  const bool german = made && std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
+  if (german) CHECK(*std::localeconv()->decimal_point == ',');
+  else MESSAGE("there is no localedef, or no German to make: tried in the locale that there is");
+  CHECK(rosin::grbl_number(-40.5) == "-40.500");
+  CHECK(rosin::parse_grbl_status("<Idle|MPos:-12.500,0.000,0.000|FS:0,0>")->machine == -12.5);
+  CHECK(rosin::parse_grbl_setting("$120=10.500")->second == 10.5);
+  rosin::grbl_simulator sled;
+  CHECK(sled.receive("$120=10.500\n", 0) == "ok\r\n");
+  CHECK(sled.receive("$$\n", 0).find("$120=10.500\r\n") != std::string::npos);
+  CHECK(sled.receive("G21G91G1X-40.500F12000.000\n", 0) == "ok\r\n");
+  std::setlocale(LC_ALL, "C");
+  ::unsetenv("LOCPATH");
 }
 
 TEST_CASE("settings, errors and alarms") {
