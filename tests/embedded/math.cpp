@@ -2,6 +2,7 @@
 #include <rosin/math/lanes.hpp>
 #include <rosin/math/levenberg_marquardt.hpp>
 #include <rosin/math/reweighted_regression.hpp>
+#include <rosin/math/robust_loss.hpp>
 
 extern "C" void rosin_lanes(float* data, const float* twiddle) noexcept {
   using lanes = rosin::lane_complex<float, rosin::register_lanes<float>>;
