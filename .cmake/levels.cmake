@@ -1,12 +1,22 @@
 # The library that the tool loads, once for any x86-64 and once for x86-64-v3 (AVX2, FMA: since about 2013). The loader takes what
 # the machine has (glibc-hwcaps, glibc 2.33 and later). Both hide all that is not compiled once by name, since Eigen's functions of
-# one name differ between the levels; and all, the tool too, align as much, since a matrix made here may be freed there.
+# one name differ between the levels; and all, the tool too, align as much, since a matrix made here may be read and freed there.
+# ROSIN_TOOL_LEVELS=host builds only what the building machine takes, in half of the time.
 set(ROSIN_TOOL_LIBRARY ${PROJECT_BINARY_DIR}/lib/rosin)
-foreach(level IN ITEMS x86-64 x86-64-v3)
+set(levels x86-64 x86-64-v3)
+if(ROSIN_TOOL_LEVELS STREQUAL "host")
+  execute_process(COMMAND /lib64/ld-linux-x86-64.so.2 --help OUTPUT_VARIABLE loader ERROR_QUIET)
+  string(REGEX MATCH "x86-64-v3 .supported" has_v3 "${loader}")
+  set(levels x86-64)
+  if(has_v3)
+    set(levels x86-64-v3)
+  endif()
+endif()
+foreach(level IN LISTS levels)
   set(target rosin_level_${level})
   add_library(${target} SHARED ${compiled_sources})
   target_link_libraries(${target} PUBLIC rosin::rosin)
-  target_compile_definitions(${target} PUBLIC ROSIN_COMPILED EIGEN_MAX_ALIGN_BYTES=32
+  target_compile_definitions(${target} PUBLIC ROSIN_COMPILED EIGEN_MAX_ALIGN_BYTES=32 EIGEN_MAX_STATIC_ALIGN_BYTES=32
     PRIVATE [[ROSIN_INSTANTIATE_EXPORT=__attribute__((visibility("default")))]])
   set(folder ${ROSIN_TOOL_LIBRARY})
   if(NOT level STREQUAL "x86-64")
@@ -21,3 +31,11 @@ foreach(level IN ITEMS x86-64 x86-64-v3)
     install(TARGETS ${target} LIBRARY DESTINATION ${destination} COMPONENT tool)
   endif()
 endforeach()
+list(GET levels 0 level)
+target_link_libraries(rosin_tool PRIVATE rosin_level_${level})
+list(REMOVE_AT levels 0)
+list(TRANSFORM levels PREPEND rosin_level_)
+if(levels)
+  add_dependencies(rosin_tool ${levels})
+endif()
+set_target_properties(rosin_tool PROPERTIES BUILD_RPATH "\$ORIGIN/../lib/rosin" INSTALL_RPATH "\$ORIGIN/../lib/rosin")

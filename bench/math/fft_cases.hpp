@@ -24,7 +24,8 @@ double error_in_epsilons(const std::vector<T>& x, const std::vector<std::complex
     const std::size_t k = (bins.size() - 1) * i / 29;
     std::complex<long double> sum{};
     for (std::size_t j = 0; j < n; ++j)
-      sum += std::polar(static_cast<long double>(x[j]),
+      sum += static_cast<long double>(x[j]) *
+             std::polar(1.0L,
                         -2 * std::numbers::pi_v<long double> * static_cast<long double>(j * k % n) / static_cast<long double>(n));
     const std::complex<long double> bin{static_cast<long double>(bins[k].real()), static_cast<long double>(bins[k].imag())};
     worst = std::max(worst, static_cast<double>(std::abs(bin - sum)));
