@@ -195,7 +195,10 @@ private:
   [[nodiscard]] outcome<bool> exchange(const std::string& next) const {
     if (Calls::rename(part(), swap()) != 0) return given_up();
     if (Calls::exchange(swap(), path_) == 0) {
-      if (is(swap(), *text_)) return true;
+      if (is(swap(), *text_)) {
+        if (auto bad = sync_folder_of(path_)) return given_up(), failure{bad->message};
+        if (is(swap(), *text_)) return true;  // nor has somebody who had opened it before written into it since
+      }
       if (Calls::exchange(swap(), path_) != 0) return why();
       if (!is(swap(), next)) (void)Calls::exchange(swap(), path_);  // somebody was there in between: his is the newer one
       return false;
