@@ -196,7 +196,10 @@ private:
     if (Calls::rename(part(), swap()) != 0) return given_up();
     if (Calls::exchange(swap(), path_) == 0) {
       if (is(swap(), *text_)) {
-        if (auto bad = sync_folder_of(path_)) return given_up(), failure{bad->message};
+        if (auto bad = sync_folder_of(path_)) {
+          ::unlink(swap().c_str());
+          return *bad;
+        }
         if (is(swap(), *text_)) return true;  // nor has somebody who had opened it before written into it since
       }
       if (Calls::exchange(swap(), path_) != 0) return why();
