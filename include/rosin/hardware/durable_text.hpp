@@ -140,7 +140,7 @@ public:
 
   /// Puts change(text) in the place of the text, however often somebody else replaces it meanwhile.
   template <class Change>
-  [[nodiscard]] std::optional<failure> change(Change change) {
+  [[nodiscard]] std::optional<failure> apply(Change change) {
     (void)clear();
     for (int turn = 0; turn < 1000; ++turn) {
       auto now = read_whole_text(path_);
@@ -223,7 +223,7 @@ private:
 /// called several times, and nothing happens where it gives back what it got.
 template <class Calls = posix_calls, class Change>
 [[nodiscard]] std::optional<failure> change_durably(const std::string& path, Change change) {
-  return detail::text_exchange<Calls>{detail::followed(path)}.change(std::move(change));
+  return detail::text_exchange<Calls>{detail::followed(path)}.apply(std::move(change));
 }
 
 /// Clears away what a killed program has left beside the file; the names of what is kept, since the file does not say it.

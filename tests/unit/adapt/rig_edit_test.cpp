@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace adapt_rig_edit {
+
 namespace {
 
 const std::string block = "\n[[take]]\nname = \"b\"\nkind = \"quiet\"\nfile = \"b.wav\"\n";
@@ -58,3 +60,5 @@ TEST_CASE("remarks stand below the take that they are about") {
   CHECK(*rosin::with_remarks("[[take]]\nfile = \"a.wav\"\nprofile = [[0, 0],\n  [1, 2]] # steady\n[string]\n", "a.wav", {"x"},
                              "f") == "[[take]]\nfile = \"a.wav\"\nprofile = [[0, 0],\n  [1, 2]] # steady\n# x\n[string]\n");
 }
+
+}  // namespace adapt_rig_edit
