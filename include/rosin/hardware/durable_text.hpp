@@ -20,9 +20,9 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -122,13 +122,21 @@ template <class Calls>
   return std::nullopt;
 }
 
+/// The first line, which is taken off the text.
+[[nodiscard]] inline std::string_view take_line(std::string_view& text) noexcept {
+  const std::string_view line = text.substr(0, text.find('\n'));
+  text.remove_prefix(std::min(text.size(), line.size() + 1));
+  return line;
+}
 /// Whether each line of `part` stands in `whole`, in this order.
-[[nodiscard]] inline bool says_all_of(const std::string& whole, const std::string& part) {
-  std::istringstream all{whole}, some{part};
-  std::string line;
-  for (std::string wanted; std::getline(some, wanted);) do
-      if (!std::getline(all, line)) return false;
-    while (line != wanted);
+[[nodiscard]] inline bool says_all_of(std::string_view whole, std::string_view part) noexcept {
+  while (!part.empty()) {
+    const std::string_view wanted = take_line(part);
+    for (bool found = false; !found;) {
+      if (whole.empty()) return false;
+      found = take_line(whole) == wanted;
+    }
+  }
   return true;
 }
 

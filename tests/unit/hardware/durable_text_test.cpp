@@ -10,6 +10,7 @@
 #include <csignal>
 #include <functional>
 #include <set>
+#include <sstream>
 
 namespace hardware_durable_text {
 
