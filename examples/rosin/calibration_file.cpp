@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "calibration_file.hpp"
+#include "rig_leftovers.hpp"
 
 #include <fstream>
 #include <iostream>
@@ -269,7 +270,7 @@ std::optional<rosin::failure> may_write_file(const std::string& path, bool force
   if (path == "-") return std::nullopt;
   auto why = rosin::cannot_write(path, force ? rosin::overwrite::allow : rosin::overwrite::refuse);
   if (why && !force && std::filesystem::exists(path)) why->message += "; --force overwrites it";
-  return why;
+  return why ? why : being_written(path);
 }
 
 std::optional<rosin::failure> save_json(const std::string& path, const json& document, bool force) {

@@ -4,6 +4,7 @@
 //
 #include "challenge_rig.hpp"
 #include "digits.hpp"
+#include "rig_leftovers.hpp"
 
 #include <rosin/adapt/audio_sndfile.hpp>
 #include <rosin/friction/elasto_plastic.hpp>
@@ -163,6 +164,9 @@ std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const fs
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return rosin::failure{folder.string() + ": cannot be made: " + error.message()};
+  const auto lock = lock_folder(folder.string());
+  if (!lock) return rosin::failure{lock.error()};
+  if (auto why = recording_in(folder.string())) return why;
   const auto existing = force ? rosin::overwrite::allow : rosin::overwrite::refuse;
   std::uint64_t seed = rig.base.seed * 1000;
   for (const auto& take : takes) {

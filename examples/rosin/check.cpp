@@ -6,7 +6,9 @@
 #include "digits.hpp"
 #include "progress.hpp"
 #include "rig_input.hpp"
+#include "rig_leftovers.hpp"
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -105,9 +107,26 @@ void print_result(const check_options& given, const provenance& from, const rosi
   std::cout << found.errors << " error(s), " << found.warnings << " warning(s)\n";
 }
 
+std::vector<std::string> find_leftovers(const std::string& path, const rosin::outcome<rosin::rig_folder>& rig) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const std::string folder = fs::is_directory(path, ignored) ? path : fs::path{path}.parent_path().string();
+  std::optional<std::vector<std::string>> named;
+  if (rig) named.emplace();
+  for (std::size_t i = 0; rig && i < rig->rig.takes.size(); ++i)
+    named->push_back(fs::path{rig->rig.takes[i].file}.lexically_normal().string());
+  return leftovers_in(folder, named);
+}
+
 exit_code run(const check_options& given, provenance from) {
-  const auto folder = open_rig(given.rig, from);
-  if (!folder) return fail(folder.error(), given.json);
+  auto folder = open_rig(given.rig, from);
+  const auto left = find_leftovers(given.rig, folder);
+  if (!folder) {
+    std::string all = folder.error();
+    for (const auto& line : left) all += '\n' + line;
+    return fail(all, given.json);
+  }
+  folder->notes.insert(folder->notes.end(), left.begin(), left.end());
   std::vector<rosin::take_check> takes;
   std::string unreadable;
   {
@@ -136,7 +155,8 @@ void add_check(CLI::App& app, exit_code& result) {
   command->footer(
       "Reads every take and looks for clipping, lost samples, silence, offset, noise, mains hum, swapped or inverted\n"
       "channels, a wrong sample rate or pitch, and plucks that do not ring. Each finding names file, channel and time,\n"
-      "and says what to do. Defaults that a calculation would use are listed too.\n"
+      "and says what to do. Defaults that a calculation would use are listed too, and what is being recorded or was left\n"
+      "by a recording that was killed.\n"
       "Exit status: 0 nothing wrong, 1 errors were found (with --strict warnings, too), 2 nothing could be read.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }

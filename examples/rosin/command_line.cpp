@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "command_line.hpp"
 
+#include "rig_leftovers.hpp"
+
 #include <rosin/adapt/mat_matio.hpp>
 #include <rosin/report/csv.hpp>
 #include <rosin/report/npy.hpp>
@@ -40,7 +42,7 @@ void add_table_options(CLI::App& command, table_output& output) {
 std::optional<rosin::failure> may_write(const table_output& output) {
   auto why = rosin::cannot_write(output.path, output.existing());
   if (why && !output.force && std::filesystem::exists(output.path)) why->message += "; --force overwrites it";
-  return why;
+  return why ? why : being_written(output.path);
 }
 
 std::optional<rosin::failure> save(const table_output& output, const rosin::table& data) {

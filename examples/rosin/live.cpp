@@ -32,8 +32,9 @@ rosin::outcome<rosin::rig> rig_of(const live_request& given, take_plan& take, st
   auto opened = rig_file_writer::open(given.rig, "");
   if (!opened) return rosin::failure{opened.error()};
   files.emplace(*std::move(opened));
-  if (take.name.empty()) take.name = files->free_name(take.kind);
-  return files->with(take);
+  auto rig = files->reserve(take);
+  for (const auto& line : files->repaired()) std::cerr << "rosin: " << line << '\n';
+  return rig;
 }
 
 json memory_json(std::uint64_t before, std::uint64_t after) {

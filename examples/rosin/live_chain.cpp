@@ -3,6 +3,7 @@
 
 #include "digits.hpp"
 #include "recorder.hpp"
+#include "rig_leftovers.hpp"
 
 #include <rosin/hardware/csv_sink.hpp>
 #include <rosin/hardware/take_file.hpp>
@@ -42,6 +43,7 @@ rosin::outcome<frame_output> open_output(const std::string& path, bool force, do
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) {
     if (!force) return rosin::failure{path + ": exists already; --force overwrites it"};
+    if (const auto why = being_written(path)) return *why;
     std::filesystem::remove(path, ignored);
   }
   if (path.ends_with(".wav")) {

@@ -8,7 +8,6 @@
 #include "sled.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -26,27 +25,9 @@ struct options {
   bool json = false;
 };
 
-/// Names, and the rig file as it will be, before anything is opened.
-std::optional<rosin::failure> plan(take_plan& take, const rig_file_writer& files) {
-  if (take.name.empty()) take.name = files.free_name(take.kind);
-  const auto rig = files.with(take);
-  if (!rig) return rosin::failure{rig.error()};
-  std::error_code ignored;
-  if (std::filesystem::exists(files.folder() + "/" + take.file(), ignored))
-    return rosin::failure{files.folder() + "/" + take.file() + ": exists already"};
-  return std::nullopt;
-}
-
-/// Takes of the folder that were broken off get their final heads.
-std::vector<std::string> mend(const std::string& folder) {
-  std::vector<std::string> out;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator{folder, ignored}) {
-    if (entry.path().extension() != ".wav") continue;
-    const auto mended = rosin::mend_take(entry.path().string());
-    if (mended && *mended) out.push_back(entry.path().string() + ": was broken off; its header is in order now");
-  }
-  return out;
+/// Says what was put in order since the last call.
+void tell_repairs(const rig_file_writer& files, std::size_t& told) {
+  for (; told < files.repaired().size(); ++told) std::cerr << "rosin: " << files.repaired()[told] << std::endl;
 }
 
 bool channels_fit(const rosin::rig& rig, const rosin::frame_format& format, std::string& why) {
@@ -62,9 +43,12 @@ bool channels_fit(const rosin::rig& rig, const rosin::frame_format& format, std:
 /// One take after the other; the first entry of `out` that is over is the last.
 std::optional<rosin::failure> record_all(const options& given, rig_file_writer& files, recorder& from,
                                          std::vector<take_report>& out) {
+  std::size_t told = files.repaired().size();
   for (int i = 0; i < given.count && !stopped() && (out.empty() || !out.back().over); ++i) {
     take_plan take = given.take;
-    if (auto why = plan(take, files)) return why;
+    const auto reserved = files.reserve(take);
+    tell_repairs(files, told);
+    if (!reserved) return rosin::failure{reserved.error()};
     std::optional<sled> moves;
     recorder_hooks hooks;
     if (!given.stroke.device.empty()) {
@@ -86,13 +70,17 @@ std::optional<rosin::failure> record_all(const options& given, rig_file_writer& 
   return std::nullopt;
 }
 
-exit_code tell(const options& given, const std::string& rig, const recorder& from, const std::vector<take_report>& reports,
-               const std::vector<std::string>& mended, const std::optional<rosin::failure>& why) {
+exit_code tell(const options& given, const rig_file_writer& files, const recorder& from, const std::vector<take_report>& reports,
+               const std::optional<rosin::failure>& why) {
   if (why) std::cerr << "rosin: " << why->message << '\n';
   json takes = json::array();
   for (const auto& r : reports) takes.push_back(to_json(r));
   if (given.json)
-    print({{"schema", 1}, {"rig", rig}, {"takes", takes}, {"mended", mended}, {"fullest_buffer", from.fullest_buffer()}});
+    print({{"schema", 1},
+           {"rig", files.path()},
+           {"takes", takes},
+           {"mended", files.repaired()},
+           {"fullest_buffer", from.fullest_buffer()}});
   const bool sound =
       std::all_of(reports.begin(), reports.end(), [](const auto& r) { return r.problems.empty() && r.frames > 0; });
   return sound && !why && !reports.empty() ? exit_code::ok : exit_code::finding;
@@ -103,22 +91,23 @@ exit_code run(const options& given) {
   auto files = rig_file_writer::open(given.rig, given.like);
   if (!files) return fail(files.error(), given.json);
   if (given.count > 1 && !given.take.name.empty()) return fail("--count: --take names one take only", given.json);
+  std::size_t told = 0;
+  tell_repairs(*files, told);
   take_plan first = given.take;
-  if (const auto why = plan(first, *files)) return fail(why->message, given.json);
-  const auto mended = mend(given.rig);
-  for (const auto& line : mended) std::cerr << "rosin: " << line << '\n';
+  const auto rig = files->plan(first);
+  if (!rig) return fail(rig.error(), given.json);
   auto input = open_input(given.input);
   if (!input) return fail(input.error(), given.json);
   recorder from{*std::move(input), given.how};
-  if (std::string why; !channels_fit(*files->with(first), from.format(), why)) return fail(why, given.json);
-  const double period_s = 1 / files->with(first)->string.fundamental_Hz;
+  if (std::string why; !channels_fit(*rig, from.format(), why)) return fail(why, given.json);
+  const double period_s = 1 / rig->string.fundamental_Hz;
   if (first.kind == "pluck" && given.how.trigger.threshold > 0 && given.how.trigger.before_s < 2 * period_s)
     std::cerr << "rosin: --before " << in_digits(given.how.trigger.before_s) << " s is less than two periods of the string ("
               << in_digits(2 * period_s) << " s): a pluck without its release cannot be calibrated from\n";
   std::vector<take_report> reports;
   const auto why = record_all(given, *files, from, reports);
   if (why && reports.empty()) return fail(why->message, given.json);
-  return tell(given, files->path(), from, reports, mended, why);
+  return tell(given, *files, from, reports, why);
 }
 
 }  // namespace
@@ -142,6 +131,7 @@ void add_record(CLI::App& app, exit_code& result) {
   add_json_option(*command, given->json);
   command->footer(
       "Samples are in the file at once and on the disk within a second; whatever happens, the take can be read.\n"
+      "Others may record into the folder and change rig.toml meanwhile; what a killed recording has left is put in order.\n"
       "Ctrl-C ends the take. Exit status: 0 recorded; 1 recorded, but frames are missing or it broke off; 2 nothing was done.");
   command->callback([given, &result] { result = run(*given); });
 }

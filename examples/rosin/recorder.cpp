@@ -9,6 +9,7 @@
 
 #include <csignal>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <iostream>
@@ -106,14 +107,12 @@ public:
     line_.draw(report_.take.name + time, meter_.levels(), hooks_.shows ? hooks_.shows() : "");
   }
   [[nodiscard]] take_report finish() {
-    if (named_.valid())
-      if (const auto bad = named_.get()) problem(bad->message);
+    if (named_.valid()) (void)named_.get();  // where it failed, it is tried again below
+    bool sound = true;
     if (file_)
-      if (const auto bad = file_->finish()) problem(bad->message);
+      if (const auto bad = file_->finish()) sound = false, problem(bad->message);
     for (const auto& level : meter_.levels()) report_.clipped.push_back(level.clipped);
-    if (file_ && files_ != nullptr && !remarks().empty())
-      if (const auto bad = files_->put(report_.take, remarks())) problem(bad->message);
-    if (file_ && files_ != nullptr) files_->keep();
+    if (files_ != nullptr) leave_folder(sound);
     const std::chrono::duration<double> all = std::chrono::steady_clock::now() - start_;
     report_.busy = busy_s_ / std::max(1e-9, all.count());
     return std::move(report_);
@@ -173,11 +172,24 @@ private:
       if (bad) return failed(*bad);
     }
     report_.frames += count;
-    if (first && files_ != nullptr) named_ = std::async(std::launch::async, [this] { return files_->put(report_.take); });
+    if (first && files_ != nullptr) named_ = std::async(std::launch::async, [this] { return name(); });
     if (first && hooks_.begun) hooks_.begun();
     if (hooks_.frames)
       if (const auto bad = hooks_.frames(to_others.first(count * width))) return failed(*bad);
     return true;
+  }
+  /// Into the rig file, once there is something on the disk that it can name.
+  [[nodiscard]] std::optional<rosin::failure> name() {
+    if (auto bad = file_->sync()) return bad;
+    return files_->put();
+  }
+  void leave_folder(bool sound) {
+    if (report_.frames == 0) {
+      std::error_code ignored;
+      if (file_) std::filesystem::remove(files_->folder() + "/" + report_.take.file(), ignored);
+      return files_->give_up();
+    }
+    if (const auto bad = files_->finish(remarks(), sound)) problem(bad->message);
   }
   [[nodiscard]] bool open() {
     auto made = rosin::take_file<>::create(files_->folder() + "/" + report_.take.file(), report_.format);

@@ -66,7 +66,7 @@ public:
   recorder(frame_input from, recorder_options how) : how_{how}, from_{std::move(from)} {}
 
   [[nodiscard]] rosin::frame_format format() const noexcept { return from_.format(); }
-  /// One take. `files` null: nothing is written.
+  /// One take, which `files` has reserved. `files` null: nothing is written.
   [[nodiscard]] take_report record(const take_plan& take, rig_file_writer* files, const recorder_hooks& hooks = {});
   /// What came before now belongs to no take, unless the source is a file or a pipe.
   void skip() { from_.skip(); }

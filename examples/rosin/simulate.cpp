@@ -6,6 +6,7 @@
 #include "digits.hpp"
 #include "progress.hpp"
 #include "rig_input.hpp"
+#include "rig_leftovers.hpp"
 #include "simulate_declaration.hpp"
 #include "simulate_model.hpp"
 #include "simulate_truth.hpp"
@@ -68,6 +69,7 @@ places find_places(const simulate_options& given, const rosin::rig& rig) {
 std::string problem_with(const places& to, const simulate_options& given, const rosin::rig& rig) {
   if (whole_path(given.out) == whole_path(rig.folder.empty() ? "." : rig.folder))
     return given.out + ": is the folder of the rig file itself, which would be overwritten";
+  if (const auto why = recording_in(to.folder.string())) return why->message;
   if (lies_in(to.truth, to.folder)) return to.truth.string() + ": the truth must not lie in the folder of the recordings";
   std::vector<fs::path> all{to.rig, to.truth};
   all.insert(all.end(), to.recordings.begin(), to.recordings.end());
@@ -126,6 +128,12 @@ std::optional<rosin::failure> write_tables_of_ends(const simulate_options& given
 std::optional<rosin::failure> write_all(const simulate_options& given, const provenance& from, const rosin::rig& rig,
                                         const simulation_plan& plan, const std::vector<simulated_take>& takes, const places& to,
                                         const std::string& declared) {
+  std::error_code error;
+  fs::create_directories(to.folder, error);
+  if (error) return rosin::failure{to.folder.string() + ": cannot be made: " + error.message()};
+  const auto lock = lock_folder(to.folder.string());
+  if (!lock) return rosin::failure{lock.error()};
+  if (auto why = recording_in(to.folder.string())) return why;
   if (auto why = write_tables_of_ends(given, rig, to)) return why;
   if (auto why = write_takes(given, from, plan, takes, to)) return why;
   std::vector<std::string> tables;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "take_plan.hpp"
+#include "rig_leftovers.hpp"
 #include "simulate_declaration.hpp"
 
-#include <rosin/adapt/rig_toml.hpp>
+#include <rosin/adapt/rig_edit.hpp>
 #include <rosin/hardware/durable_text.hpp>
 
-#include <fstream>
+#include <algorithm>
 #include <sstream>
 
 namespace tool {
@@ -14,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without [[take]] tables; what is indented or commented between them goes too.
+/// Without [[take]] tables; what is indented or commented between them goes too. Takes that stand there in another way go all the
+/// same, but then the text is written anew from what it means.
 std::string without_takes(const std::string& text) {
   std::istringstream lines{text};
   std::string out;
@@ -25,7 +27,13 @@ std::string without_takes(const std::string& text) {
     if (!in_take) out += line + '\n';
   }
   while (out.ends_with("\n\n")) out.pop_back();
-  return out;
+  auto wanted = rosin::detail::parse_toml(text, "");
+  if (!wanted) return out;
+  wanted->erase("take");
+  if (rosin::detail::means(out, *wanted)) return out;
+  std::ostringstream anew;
+  anew << *wanted << '\n';
+  return anew.str();
 }
 
 std::string figure(double x) {
@@ -45,7 +53,7 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-std::string block(const take_plan& t, const std::vector<std::string>& remarks) {
+std::string block(const take_plan& t) {
   std::string out = "\n[[take]]\nname = " + quoted(t.name) + "\nkind = " + quoted(t.kind) + "\nfile = " + quoted(t.file()) + '\n';
   const auto value = [&](const char* key, const std::optional<double>& x) {
     if (x) out += std::string{key} + " = " + figure(*x) + '\n';
@@ -56,7 +64,6 @@ std::string block(const take_plan& t, const std::vector<std::string>& remarks) {
   value("speed_m_s", t.speed_m_s);
   value("normal_force_N", t.normal_force_N);
   if (t.hold_out) out += "hold_out = true\n";
-  for (const auto& r : remarks) out += "# " + r + '\n';
   return out;
 }
 
@@ -82,51 +89,160 @@ void add_take_options(CLI::App& command, take_plan& given) {
   command.add_flag("--hold-out", given.hold_out, "Never fitted, only predicted");
 }
 
+class rig_file_writer::reservation {
+public:
+  reservation(rosin::detail::owned_fd fd, std::string folder, std::string recording, std::string note, std::string block,
+              bool folder_is_new)
+      : fd_{std::move(fd)}, folder_{std::move(folder)},
+        recording_{std::move(recording)}, note_{std::move(note)}, block_{std::move(block)}, folder_is_new_{folder_is_new} {}
+  reservation(const reservation&) = delete;
+  reservation& operator=(const reservation&) = delete;
+  ~reservation() {
+    if (begun) return;
+    std::error_code ignored;
+    fs::remove(note_, ignored);
+    if (folder_is_new_) fs::remove(folder_, ignored);  // only if nothing is in it
+  }
+  [[nodiscard]] const std::string& recording() const noexcept { return recording_; }
+  [[nodiscard]] const std::string& note() const noexcept { return note_; }
+  [[nodiscard]] const std::string& block() const noexcept { return block_; }
+
+  bool begun = false;
+
+private:
+  rosin::detail::owned_fd fd_;  ///< of the note, locked
+  std::string folder_, recording_, note_, block_;
+  bool folder_is_new_;
+};
+void rig_file_writer::reservation_end::operator()(reservation* r) const noexcept { delete r; }
+
 rosin::outcome<rig_file_writer> rig_file_writer::open(const std::string& folder, const std::string& like) {
   rig_file_writer out;
   out.folder_ = folder;
   std::error_code error;
+  if (fs::is_directory(folder, error)) {
+    const auto lock = lock_folder(folder);
+    if (!lock) return rosin::failure{lock.error()};
+    out.repaired_ = repair_folder(folder);
+  }
   const bool there = fs::exists(out.path(), error);
-  if (there && !like.empty()) return rosin::failure{out.path() + ": exists already; --like is for a new rig"};
   if (!there && like.empty())
     return rosin::failure{out.path() + ": is not there; --like names a rig file that describes string and channels"};
-  const std::string from = there ? out.path() : fs::is_directory(like, error) ? like + "/rig.toml" : like;
-  auto text = read_text(from);
-  if (!text) return rosin::failure{text.error()};
-  out.text_ = *std::move(text);
-  if (!there) {
-    auto declared = declaration(out.text_, from);
+  if (!like.empty()) {
+    const std::string from = fs::is_directory(like, error) ? like + "/rig.toml" : like;
+    if (there) return rosin::failure{out.path() + ": exists already; --like is for a new rig"};
+    auto text = read_text(from);
+    if (!text) return rosin::failure{text.error()};
+    auto declared = declaration(*text, from);
     if (!declared) return rosin::failure{declared.error()};
-    out.text_ = without_takes(*declared);
-    fs::create_directories(folder, error);
-    if (error) return rosin::failure{folder + ": " + error.message()};
+    out.described_ = without_takes(*declared);
   }
-  out.latest_ = out.text_;
+  if (const auto bad = out.read_again()) return *bad;
   return out;
 }
 
+/// What others have made of the file since.
+std::optional<rosin::failure> rig_file_writer::read_again() {
+  rosin::wait_until_settled(path());
+  auto now = rosin::read_whole_text(path());
+  if (!now) return rosin::failure{now.error()};
+  if (!*now && described_.empty()) return rosin::failure{path() + ": is not there any more"};
+  text_ = std::move(*now).value_or(described_);
+  return std::nullopt;
+}
+
 std::string rig_file_writer::free_name(const std::string& kind) const {
+  const auto takes = rosin::find_named_takes(text_, path());
   for (int i = 1;; ++i) {
-    const std::string name = kind + "-" + std::to_string(i);
-    std::error_code ignored;
-    if (latest_.find("\"" + name + "\"") == std::string::npos && !fs::exists(folder_ + "/" + name + ".wav", ignored)) return name;
+    take_plan with;
+    with.name = kind + "-" + std::to_string(i);
+    const bool named = takes && std::any_of(takes->begin(), takes->end(), [&](const rosin::named_take& t) {
+                         return t.name == with.name || t.file == with.file();
+                       });
+    if (!named && why_taken(with).empty()) return with.name;
   }
 }
 
-rosin::outcome<rosin::rig> rig_file_writer::with(const take_plan& take) const {
-  auto rig = rosin::parse_rig(text_ + block(take, {}), path());
+std::string rig_file_writer::why_taken(const take_plan& take) const {
+  std::error_code ignored;
+  const std::string note = note_path(folder_, take.name), recording = folder_ + "/" + take.file();
+  if (rosin::file_lock::held(note)) return note + ": another program is recording a take of this name";
+  if (fs::exists(recording, ignored)) return recording + ": exists already";
+  if (fs::exists(note, ignored)) return note + ": was left by a recording that was broken off, and cannot be put in order";
+  return {};
+}
+
+rosin::outcome<rosin::rig> rig_file_writer::plan(take_plan& take) {
+  if (const auto bad = read_again()) return *bad;
+  if (take.name.empty()) take.name = free_name(take.kind);
   const bool unfinished = take.kind == "bow"     ? !take.speed_m_s || !take.normal_force_N
                           : take.kind == "pluck" ? !take.force_N
                                                  : false;
-  if (!rig && unfinished && rosin::parse_rig(text_, path()))
-    return rosin::failure{take.kind == "bow" ? "a bowed take needs --speed and --normal-force"
-                                             : "a pluck needs --wire, its nominal force"};
+  const std::string added = block(take);
+  const auto text = rosin::with_take(text_, added, path());
+  if (!text) return rosin::failure{text.error()};
+  auto rig = rosin::parse_rig(*text, path());
+  take_plan quiet;
+  quiet.name = take.name, quiet.kind = "quiet";
+  if (const auto without = rosin::with_take(text_, block(quiet), path()); !rig && unfinished && without)
+    if (rosin::parse_rig(*without, path()))
+      return rosin::failure{take.kind == "bow" ? "a bowed take needs --speed and --normal-force"
+                                               : "a pluck needs --wire, its nominal force"};
+  if (!rig) return rig;
+  if (const auto why = why_taken(take); !why.empty()) return rosin::failure{why};
   return rig;
 }
 
-std::optional<rosin::failure> rig_file_writer::put(const take_plan& take, const std::vector<std::string>& remarks) {
-  latest_ = text_ + block(take, remarks);
-  return rosin::replace_durably(path(), latest_);
+rosin::outcome<rosin::rig> rig_file_writer::reserve(take_plan& take) {
+  reserved_.reset();
+  std::error_code error;
+  const bool is_new = !fs::exists(folder_, error);
+  if (is_new) fs::create_directories(folder_, error);
+  if (error) return rosin::failure{folder_ + ": " + error.message()};
+  const auto lock = lock_folder(folder_);
+  if (!lock) return rosin::failure{lock.error()};
+  for (auto& line : repair_folder(folder_)) repaired_.push_back(std::move(line));
+  auto rig = plan(take);
+  if (!rig && is_new) fs::remove(folder_, error);
+  if (!rig) return rig;
+  const std::string note = note_path(folder_, take.name), added = block(take);
+  const auto why = [&] { return rosin::failure{note + ": " + std::strerror(errno)}; };
+  rosin::detail::owned_fd fd{::open(note.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
+  if (fd.get() < 0) return why();
+  const int file = fd.get();
+  reserved_.reset(new reservation{std::move(fd), folder_, take.file(), note, added, is_new});
+  (void)rosin::file_lock::lock(file, rosin::deadline{std::chrono::seconds{2}});
+  const std::string text = note_text(take.name, described_, added);
+  for (std::string_view left = text; !left.empty();) {
+    const ssize_t done = ::write(file, left.data(), left.size());
+    if (done > 0) left.remove_prefix(static_cast<std::size_t>(done));
+    else if (errno != EINTR) return why();
+  }
+  if (::fsync(file) != 0 && errno != EINVAL) return why();
+  if (const auto bad = rosin::sync_folder_of(note)) return *bad;
+  return rig;
+}
+
+std::optional<rosin::failure> rig_file_writer::put() {
+  reserved_->begun = true;
+  const auto lock = lock_folder(folder_);
+  if (!lock) return rosin::failure{lock.error()};
+  return join_rig_file(folder_, reserved_->recording(), described_, reserved_->block(), {});
+}
+
+std::optional<rosin::failure> rig_file_writer::finish(const std::vector<std::string>& remarks, bool sound) {
+  const auto ended = std::exchange(reserved_, nullptr);
+  ended->begun = true;
+  const auto said = [&](const std::string& why) {
+    return rosin::failure{why + "; " + ended->recording() + " is kept, and the next `rosin record` into this folder puts it in"};
+  };
+  const auto lock = lock_folder(folder_);
+  if (!lock) return said(lock.error());
+  if (const auto bad = join_rig_file(folder_, ended->recording(), described_, ended->block(), remarks)) return said(bad->message);
+  std::error_code error;
+  if (sound) fs::remove(ended->note(), error);
+  if (error) return rosin::failure{ended->note() + ": cannot be removed: " + error.message()};
+  return std::nullopt;
 }
 
 }  // namespace tool

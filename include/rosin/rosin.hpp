@@ -258,6 +258,7 @@
 #include <rosin/hardware/csv_sink.hpp>
 #include <rosin/hardware/deadline.hpp>
 #include <rosin/hardware/durable_text.hpp>
+#include <rosin/hardware/file_lock.hpp>
 #include <rosin/hardware/frame_packet.hpp>
 #include <rosin/hardware/frame_ring.hpp>
 #include <rosin/hardware/frames.hpp>

@@ -60,6 +60,29 @@ finish() {
   echo "all as expected"
 }
 
+# feed RATE LOG: numbered frames n, -n (32 bits each) at the pace of the clock; how many of them have been read out of the pipe stands in the file LOG.
+feed() {
+  perl -MTime::HiRes=time,sleep -e '
+    $SIG{PIPE} = sub { exit };
+    my ($rate, $name) = @ARGV;
+    my ($block, $at, $start) = ($rate / 200, 0, time);
+    open(my $log, ">", $name) or die;
+    while (1) {
+      my $due = $start + $at / $rate;
+      sleep($due - time) if $due > time;
+      my $bytes = pack("l<*", map { ($_, -$_) } $at .. $at + $block - 1);
+      for (my $sent = 0; $sent < length $bytes; ) {
+        my $done = syswrite(STDOUT, $bytes, length($bytes) - $sent, $sent) // exit;
+        $sent += $done;
+      }
+      $at += $block;
+      my $waiting = pack("i", 0);
+      ioctl(STDOUT, 0x541B, $waiting) or die "FIONREAD: $!\n";
+      sysseek($log, 0, 0);
+      syswrite($log, sprintf("%012d", $at - unpack("i", $waiting) / 8));
+    }' "$1" "$2"
+}
+
 # make_rig FOLDER: a rig with two plucks and a quiet take, 16 bit, 48 kHz, as a sum of partials with a little noise.
 # PERL, if set, is code that is run on each frame before it is written ($near and $far in newtons, $t in s, $take).
 make_rig() {

@@ -5,28 +5,6 @@
 make_rig described
 rate=48000
 
-# Numbered frames n, -n at the pace of the clock; how many of them have been read out of the pipe stands in the file `handed`.
-feed() {
-  perl -MTime::HiRes=time,sleep -e '
-    $SIG{PIPE} = sub { exit };
-    my ($rate, $block, $at, $start) = (48000, 240, 0, time);
-    open(my $log, ">", "handed") or die;
-    while (1) {
-      my $due = $start + $at / $rate;
-      sleep($due - time) if $due > time;
-      my $bytes = pack("l<*", map { ($_, -$_) } $at .. $at + $block - 1);
-      for (my $sent = 0; $sent < length $bytes; ) {
-        my $done = syswrite(STDOUT, $bytes, length($bytes) - $sent, $sent) // exit;
-        $sent += $done;
-      }
-      $at += $block;
-      my $waiting = pack("i", 0);
-      ioctl(STDOUT, 0x541B, $waiting) or die "FIONREAD: $!\n";
-      sysseek($log, 0, 0);
-      syswrite($log, sprintf("%012d", $at - unpack("i", $waiting) / 8));
-    }'
-}
-
 # Half a minute at most, until a file is there.
 wait_for() {
   for _ in $(seq 1500); do
@@ -40,7 +18,7 @@ worst=0
 for trial in $(seq "${ROSIN_KILLS:-4}"); do
   rm -rf rig fifo handed
   mkfifo fifo
-  feed >fifo & feeder=$!
+  feed $rate handed >fifo & feeder=$!
   "$tool" record rig --like described --source - --bare --bits 32 --rate $rate --kind quiet <fifo >out.txt 2>err.txt & recorder=$!
   if [ "$trial" -gt 1 ]; then wait_for rig/rig.toml; fi
   sleep "$(perl -e 'srand($$ + $ARGV[0]); printf "%.4f", rand($ARGV[0] > 1 ? 1.2 : 0.3)' "$trial")"

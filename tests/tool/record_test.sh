@@ -123,7 +123,8 @@ got=0; wait $recorder || got=$?
 same $got 1
 says "frames are missing"
 "$tool" record rig --source serial:line --take pulled --kind quiet >out.txt 2>err.txt & recorder=$!
-sleep 0.5; kill $fake
+for _ in $(seq 200); do perl -e 'exit !(-e "rig/pulled.wav" && -s _ > 104 + 4 * 48000 * 0.25)' && break; sleep 0.05; done
+kill $fake
 got=0; wait $recorder || got=$?
 same $got 1
 says "the device is gone" "pulled: 0."

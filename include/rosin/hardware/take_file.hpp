@@ -3,7 +3,8 @@
 //
 // A recording that survives: samples go to the file system as soon as they are there (a killed program loses what it still
 // had in its hands, see capture.hpp, and nothing else), a thread asks for them to be put on the disk every half second (a
-// power cut loses less than a second), and the head (wav_header.hpp) is right all the time.
+// power cut loses less than a second), and the head (wav_header.hpp) is right all the time. While it is written its file is locked
+// (file_lock.hpp): so a take that is being recorded can be told from one that was broken off.
 //
 // The file is a policy, so that the tests can pull the plug:
 //
@@ -14,6 +15,7 @@
 
 #include <rosin/hardware/byte_link.hpp>
 #include <rosin/hardware/durable_text.hpp>
+#include <rosin/hardware/file_lock.hpp>
 #include <rosin/hardware/wav_header.hpp>
 
 #include <atomic>
@@ -27,16 +29,20 @@
 
 namespace rosin {
 
-/// A file of the system.
+/// A file of the system, locked as long as it is open.
 class posix_file {
 public:
   [[nodiscard]] static outcome<posix_file> create(const std::string& path) {
     auto out = opened(path, O_RDWR | O_CREAT | O_EXCL);
     if (!out) return out;
+    if (!out->lock(std::chrono::seconds{2})) return failure{path + ": another program has taken hold of it"};
     if (auto bad = sync_folder_of(path)) return *bad;
     return out;
   }
+  /// Not locked yet.
   [[nodiscard]] static outcome<posix_file> existing(const std::string& path) { return opened(path, O_RDWR); }
+  /// False: somebody else writes it.
+  [[nodiscard]] bool lock(std::chrono::milliseconds patience) const { return file_lock::lock(fd_.get(), deadline{patience}); }
 
   [[nodiscard]] std::optional<failure> append(std::span<const std::uint8_t> bytes) {
     while (!bytes.empty()) {
@@ -95,6 +101,9 @@ public:
     return std::nullopt;
   }
 
+  /// What was written is on the disk when this returns; may be called from another thread.
+  [[nodiscard]] std::optional<failure> sync() { return state_->file.sync(); }
+
   /// The true sizes into the head, all of it on the disk.
   [[nodiscard]] std::optional<failure> finish() {
     thread_ = {};
@@ -148,31 +157,48 @@ private:
 
 static_assert(FrameSink<take_file<>>);
 
-/// Gives a take whose recording was broken off the head that it would have got; whole frames stay. True: there was something
-/// to mend. What is no unfinished take is left alone.
-[[nodiscard]] inline outcome<bool> mend_take(const std::string& path) {
+/// What there is of a take.
+struct take_remains {
+  frame_format format;
+  std::uint64_t bytes = 0;   ///< of whole frames that are in the file
+  bool head_is_due = false;  ///< the head does not tell of all of them
+};
+
+/// Empty: the file has no head of a take_file, or none yet.
+[[nodiscard]] inline std::optional<take_remains> find_take_remains(const std::string& path) {
   std::ifstream in{path, std::ios::binary};
   wav_head head{};
-  if (!in.read(reinterpret_cast<char*>(head.data()), head.size())) return false;
+  if (!in.read(reinterpret_cast<char*>(head.data()), head.size())) return std::nullopt;
   const auto number = [&](std::size_t at, std::size_t bytes) {
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < bytes; ++i) value |= std::uint64_t{head[at + i]} << (8 * i);
     return value;
   };
   const auto bits = static_cast<int>(number(70, 2));
-  frame_format f{static_cast<double>(number(60, 4)), static_cast<int>(number(58, 2)), bits, number(80, 2) == 3, true};
-  if (f.channels == 0 || head != make_wav_head(f, std::nullopt)) return false;
-  std::error_code error;
-  const std::uint64_t size = std::filesystem::file_size(path, error);
-  const std::uint64_t frame = sample_bytes(f) * static_cast<std::size_t>(f.channels),
-                      data = (size - wav_head_bytes) / frame * frame;
+  const frame_format f{static_cast<double>(number(60, 4)), static_cast<int>(number(58, 2)), bits, number(80, 2) == 3, true};
+  if (f.channels == 0 || sample_bytes(f) * 8 != static_cast<std::size_t>(bits)) return std::nullopt;
+  const std::uint64_t told = head[1] == 'F' ? number(28, 8) : number(100, 4),
+                      present = static_cast<std::uint64_t>(in.seekg(0, std::ios::end).tellg()) - wav_head_bytes,
+                      frame = sample_bytes(f) * static_cast<std::size_t>(f.channels), whole = present / frame * frame;
+  if (head == make_wav_head(f, std::nullopt)) return take_remains{f, whole, true};
+  if (head != make_wav_head(f, told)) return std::nullopt;
+  return present > told + told % 2 ? take_remains{f, whole, true} : take_remains{f, std::min(whole, told), false};
+}
+
+/// Gives a take whose recording was broken off the head that it would have got; whole frames stay. True: there was something
+/// to mend. What is no unfinished take, or is being written, is left alone.
+[[nodiscard]] inline outcome<bool> mend_take(const std::string& path) {
+  if (const auto found = find_take_remains(path); !found || !found->head_is_due) return false;
   auto file = posix_file::existing(path);
   if (!file) return failure{file.error()};
-  if (auto bad = file->cut(wav_head_bytes + data)) return *bad;
-  if (data % 2 == 1)
-    if (auto bad = file->write_at(wav_head_bytes + data, std::array<std::uint8_t, 1>{})) return *bad;
+  if (!file->lock(std::chrono::milliseconds{100})) return false;
+  const auto found = find_take_remains(path);  // who had the lock may have come to an end
+  if (!found || !found->head_is_due) return false;
+  if (auto bad = file->cut(wav_head_bytes + found->bytes)) return *bad;
+  if (found->bytes % 2 == 1)
+    if (auto bad = file->write_at(wav_head_bytes + found->bytes, std::array<std::uint8_t, 1>{})) return *bad;
   if (auto bad = file->sync()) return *bad;
-  if (auto bad = file->write_at(0, make_wav_head(f, data))) return *bad;
+  if (auto bad = file->write_at(0, make_wav_head(found->format, found->bytes))) return *bad;
   if (auto bad = file->sync()) return *bad;
   return true;
 }

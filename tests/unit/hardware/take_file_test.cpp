@@ -218,6 +218,46 @@ TEST_CASE("a full disk is said at once, and what was recorded stays") {
   CHECK(is_numbered(*read));
 }
 
+TEST_CASE("a take that is being written is left alone, and can be told from one that was broken off") {
+  const test::temporary_folder folder;
+  const std::string path = folder / "a.wav";
+  {
+    auto take = rosin::take_file<>::create(path, format);
+    REQUIRE(take.has_value());
+    REQUIRE_FALSE(take->write(numbered(0, 1000)));
+    const std::string before = folder.read("a.wav");
+    CHECK_FALSE(*rosin::mend_take(path));
+    CHECK(folder.read("a.wav") == before);
+    CHECK(rosin::file_lock::held(path));
+    REQUIRE_FALSE(take->write(numbered(1000, 1000)));
+  }
+  CHECK_FALSE(rosin::file_lock::held(path));
+  CHECK(rosin::find_take_remains(path)->head_is_due);
+  CHECK(*rosin::mend_take(path));
+  CHECK(rosin::read_audio(path)->frames() == 2000);
+  CHECK_FALSE(rosin::find_take_remains(path)->head_is_due);
+}
+
+TEST_CASE("frames behind what the head tells, which somebody has mended too early, are found again") {
+  const test::temporary_folder folder;
+  {
+    auto take = rosin::take_file<>::create(folder / "a.wav", format);
+    REQUIRE(take.has_value());
+    REQUIRE_FALSE(take->write(numbered(0, 1500)));
+    REQUIRE_FALSE(take->finish());
+  }
+  std::string file = folder.read("a.wav");
+  const auto early = rosin::make_wav_head(format, 6 * 1001);
+  std::copy(early.begin(), early.end(), file.begin());
+  const std::string path = folder.write("a.wav", file);
+  CHECK(rosin::read_audio(path)->frames() == 1001);
+  CHECK(*rosin::mend_take(path));
+  const auto read = rosin::read_audio(path);
+  REQUIRE(read.has_value());
+  CHECK(read->frames() == 1500);
+  CHECK(is_numbered(*read));
+}
+
 TEST_CASE("what is no unfinished take is left alone") {
   const test::temporary_folder folder;
   CHECK_FALSE(*rosin::mend_take(folder.write("short", "RIFF")));
