@@ -97,6 +97,7 @@ exit_code run(const init_request& given, const provenance& from) {
   const std::string file = given.rig_folder() + "/rig.toml";
   const auto existing = given.force ? rosin::overwrite::allow : rosin::overwrite::refuse;
   std::error_code error;
+  if (!std::filesystem::is_directory(given.folder, error)) return fail(given.folder + ": no such folder", given.json);
   if (!given.out.empty()) std::filesystem::create_directories(given.out, error);
   if (auto why = rosin::cannot_write(file, existing))
     return fail(why->message + (given.force                            ? ""

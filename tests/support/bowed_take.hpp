@@ -67,7 +67,8 @@ inline std::vector<std::vector<double>> bowed_columns(const stroke& s) {
 
 inline rosin::take_signals signals_from(const stroke& s, std::vector<std::vector<double>> columns) {
   rosin::recording read;
-  read.file = "whole_1.csv", read.sample_rate_Hz = s.rate_Hz, read.channels = std::move(columns), read.bits = 64, read.float_format = true;
+  read.file = "whole_1.csv", read.sample_rate_Hz = s.rate_Hz, read.channels = std::move(columns), read.bits = 64,
+  read.float_format = true;
   read.is_table = true;
   return *rosin::signals_of(bowing_machine(s), bowed_take(s), read);
 }

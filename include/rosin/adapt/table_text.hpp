@@ -144,6 +144,7 @@ private:
       numbers = numbers || is_like_number(field);
       if (left.find(separator_) == std::string_view::npos) break;
     }
+    whole_ = separator_ == ',' && text.find('.') == std::string_view::npos;
     if (names.size() > 1 && names.back().empty()) names.pop_back(), closed_ = true;
     header_ = !numbers;
     if (names.size() > 1024) wrong_ = "has " + std::to_string(names.size()) + " columns";
@@ -217,7 +218,9 @@ private:
     while (!field.empty() && is_blank(field.back())) field.remove_suffix(1);
     const std::size_t wanted = row_.size() + (closed_ ? 1 : 0);
     if (fields != wanted && (column >= row_.size() || column >= fields || field.empty()))
-      wrong_ = "has " + std::to_string(fields) + " column(s), the first line has " + std::to_string(wanted);
+      wrong_ = "has " + std::to_string(fields) + " column(s), the first line has " + std::to_string(wanted) +
+               (whole_ && text.find('.') == std::string_view::npos ? "; if its numbers have decimal commas, export it with points"
+                                                                   : "");
     else wrong_ = column_text(out_.data, column) + ": " + reason(field);
   }
 
@@ -245,7 +248,8 @@ private:
   const std::string& name_;
   std::size_t max_rows_, rows_ = 0;
   char separator_ = ',';
-  bool header_ = false, closed_ = false, padded_ = false;  ///< closed: a separator ends each line
+  bool header_ = false, closed_ = false, padded_ = false,
+       whole_ = false;  ///< closed: a separator ends each line; whole: no point in the first
   int line_ = 0;
   std::vector<double> row_;
   std::string wrong_;

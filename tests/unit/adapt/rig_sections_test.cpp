@@ -124,7 +124,8 @@ TEST_CASE("[friction] and [simulate]") {
       {"[contact]", "[bow]\nkind = \"hare\"\n[contact]", "rig.toml:19: bow.kind: unknown name \"hare\"; did you mean hair?"},
       {"[contact]", "[bow]\nkind = \"hair\"\nwidth_m = 10\n[contact]",
        "rig.toml:20: bow.width_m: must be at least 0 and at most 0.1, is 10"},
-      {"[contact]", "[bow]\nkind = \"hair\"\ntilt = 2\n[contact]", "rig.toml:20: bow.tilt: must be at least 0 and at most 1, is 2"},
+      {"[contact]", "[bow]\nkind = \"hair\"\ntilt = 2\n[contact]",
+       "rig.toml:20: bow.tilt: must be at least 0 and at most 1, is 2"},
       {"[contact]", "[bow]\nkind = \"rod\"\nhair_mass_kg = 0.006\n[contact]",
        "rig.toml:20: bow.hair_mass_kg: belongs to a bow of kind \"hair\""},
       {"seed = 1", "sede = 1", "rig.toml:43: simulate.sede: unknown key; did you mean seed?"},
@@ -134,8 +135,9 @@ TEST_CASE("[friction] and [simulate]") {
 
 TEST_CASE("[bow]: a ribbon of hair; left out, a rigid rod") {
   CHECK_FALSE(rosin::parse_rig(test::rig_text, "rig.toml")->bow);
-  const auto r = rosin::parse_rig(test::changed("[contact]", "[bow]\nkind = \"hair\"\nwidth_m = 0.01\nhair_stiffness_N_m = 1.1e5\n"
-                                                             "hair_mass_kg = 0.0062\nhair_resistance_Ns_m = 10\ntilt = 0.5\n[contact]"),
+  const auto r = rosin::parse_rig(test::changed("[contact]",
+                                                "[bow]\nkind = \"hair\"\nwidth_m = 0.01\nhair_stiffness_N_m = 1.1e5\n"
+                                                "hair_mass_kg = 0.0062\nhair_resistance_Ns_m = 10\ntilt = 0.5\n[contact]"),
                                   "rig.toml");
   CHECK(r.error() == "");
   REQUIRE(r);

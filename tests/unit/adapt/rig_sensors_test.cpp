@@ -91,9 +91,7 @@ TEST_CASE("[terminations]: rigid, fit, modes or a file") {
 }
 
 TEST_CASE("a column by its name instead of its place; a variable is one") {
-  const auto sled = [](const std::string& how) {
-    return test::changed("sled = { index = 4,", "sled = { " + how);
-  };
+  const auto sled = [](const std::string& how) { return test::changed("sled = { index = 4,", "sled = { " + how); };
   for (const char* key : {"column", "variable"}) {
     const auto r = rosin::parse_rig(sled(std::string{key} + " = \"v (m/s)\","), "rig.toml");
     CHECK(r.error() == "");

@@ -36,7 +36,8 @@ TEST_CASE("[[take]]: each key, its type, range and name") {
       {"hold_out = true", "steady_s = [0.2]", "rig.toml:65: take[2].steady_s: must be a pair of times, as [1.5, 1.9]"},
       {"hold_out = true", "steady_s = 0.2", "rig.toml:65: take[2].steady_s: must be a pair of times, as [1.5, 1.9]"},
       {"hold_out = true", "steady_s = [0.2, 0.2]", "rig.toml:65: take[2].steady_s: ends before it begins"},
-      {"hold_out = true", "steady_s = [-1, 0.2]", "rig.toml:65: take[2].steady_s[0]: must be at least 0 and at most 1000000, is -1"},
+      {"hold_out = true", "steady_s = [-1, 0.2]",
+       "rig.toml:65: take[2].steady_s[0]: must be at least 0 and at most 1000000, is -1"},
       {"contact_position = 0.25", "steady_s = [0, 1]", "rig.toml:51: take[0].steady_s: does not belong to a take of kind pluck"},
       {"hold_out = true", "rate_Hz = 50000",
        "rig.toml:65: take[2].rate_Hz: belongs to a table of numbers: this file tells its own rate"},
@@ -87,7 +88,8 @@ TEST_CASE("what a channel measures need not be declared") {
 
 TEST_CASE("a table: its rate in the take, in [files], or a column of times") {
   const std::string text = test::changed("file = \"bow-1.wav\"", "file = \"bow-1.csv\"");
-  const auto own = rosin::parse_rig(test::changed("hold_out = true", "rate_Hz = 50000\nsteady_s = [0.1, 0.25]", text), "rig.toml");
+  const auto own =
+      rosin::parse_rig(test::changed("hold_out = true", "rate_Hz = 50000\nsteady_s = [0.1, 0.25]", text), "rig.toml");
   CHECK(own.error() == "");
   REQUIRE(own);
   CHECK(own->takes[2].rate_Hz == 50000.0);

@@ -42,7 +42,8 @@ TEST_CASE("data sets are columns under their paths, two axes are columns, what i
 TEST_CASE("a file that is none") {
   const test::temporary_folder folder;
   CHECK(rosin::read_hdf5(folder / "none.h5").error() == folder / "none.h5: no such file");
-  CHECK(rosin::read_hdf5(folder.write("b.h5", "text")).error() == folder / "b.h5: is no HDF5 file that can be read, or it is damaged");
+  CHECK(rosin::read_hdf5(folder.write("b.h5", "text")).error() ==
+        folder / "b.h5: is no HDF5 file that can be read, or it is damaged");
 }
 
 }  // namespace adapt_table_hdf5

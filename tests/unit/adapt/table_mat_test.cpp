@@ -39,8 +39,9 @@ TEST_CASE("vectors are columns under their names, a matrix is its columns, what 
 TEST_CASE("a file that is none or holds no number") {
   const test::temporary_folder folder;
   CHECK(rosin::read_mat(folder / "none.mat").error() == folder / "none.mat: no such file");
-  CHECK(rosin::read_mat(folder.write("b.mat", "no MATLAB file, but long enough to hold a head of 128 bytes of text, if "
-                                              "somebody tried to read it as one, which somebody does here on purpose"))
+  CHECK(rosin::read_mat(folder.write("b.mat",
+                                     "no MATLAB file, but long enough to hold a head of 128 bytes of text, if "
+                                     "somebody tried to read it as one, which somebody does here on purpose"))
             .error()
             .starts_with(folder / "b.mat: "));
   rosin::table made;

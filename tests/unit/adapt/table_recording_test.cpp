@@ -65,7 +65,8 @@ TEST_CASE("gaps, doubled rows, times that go back and a rate that contradicts ar
 
 TEST_CASE("a recording has the columns as channels; a format that this build does not read is named") {
   const test::temporary_folder folder;
-  const auto read = rosin::read_table_recording(folder.write("a.TSV", "f\tg\n1\t2\n3\t40\n"), {1000.0, {}}, rosin::plain_table_formats());
+  const auto read =
+      rosin::read_table_recording(folder.write("a.TSV", "f\tg\n1\t2\n3\t40\n"), {1000.0, {}}, rosin::plain_table_formats());
   CHECK(read.error() == "");
   REQUIRE(read);
   CHECK(read->columns == std::vector<std::string>{"f", "g"});

@@ -27,8 +27,8 @@ using columns = std::vector<std::vector<double>>;
 TEST_CASE("any separator, any line ends, with and without a header, comments and quotes") {
   const columns two{{1, 3}, {-2.5e-3, 4}};
   for (const char* text : {"1,-2.5e-3\n3,4\n", "1,-2.5e-3\r\n3,4\r\n", "1,-2.5e-3\r3,4\r", "1;-2.5e-3\n3;4", "1\t-2.5e-3\n3\t4\n",
-                           "a,b\n1,-2.5e-3\n3,4\n", "\xef\xbb\xbf\"a\",\"b\"\n1,-2.5e-3\n3,4\n", " 1 , -2.5e-3 \n\n# later\n+3,\"4\"\n",
-                           "% no header\n1,-2.5e-3,\n3,4,\n", "1,-0.0025\n3,4\n\n\n"}) {
+                           "a,b\n1,-2.5e-3\n3,4\n", "\xef\xbb\xbf\"a\",\"b\"\n1,-2.5e-3\n3,4\n",
+                           " 1 , -2.5e-3 \n\n# later\n+3,\"4\"\n", "% no header\n1,-2.5e-3,\n3,4,\n", "1,-0.0025\n3,4\n\n\n"}) {
     CAPTURE(text);
     CHECK(values(text) == two);
   }
@@ -42,9 +42,11 @@ TEST_CASE("any separator, any line ends, with and without a header, comments and
 }
 
 TEST_CASE("what is no table of numbers is said by line, column and reason") {
-  CHECK(wrong("1,2\n3\n") == "a.csv:2: has 1 column(s), the first line has 2");
-  CHECK(wrong("1,2\n3,4,5\n") == "a.csv:2: has 3 column(s), the first line has 2");
-  CHECK(wrong("1,2,\n3,\n") == "a.csv:2: has 2 column(s), the first line has 3");
+  CHECK(wrong("1.5,2\n3\n") == "a.csv:2: has 1 column(s), the first line has 2");
+  CHECK(wrong("1,2\n3,4,5.5\n") == "a.csv:2: has 3 column(s), the first line has 2");
+  CHECK(wrong("1,2\n3,4,5\n") ==
+        "a.csv:2: has 3 column(s), the first line has 2; if its numbers have decimal commas, export it with points");
+  CHECK(wrong("1;2;\n3;\n") == "a.csv:2: has 2 column(s), the first line has 3");
   CHECK(wrong("1,2\r\n3,four\r\n") == "a.csv:2: column 2 (index 1): \"four\" is not a number");
   CHECK(wrong("a,b\n1,2\n3,4 N\n") == "a.csv:3: column 2 (b): \"4 N\" is not a number");
   CHECK(wrong("1,2\n3,nan\n") == "a.csv:2: column 2 (index 1): \"nan\" is no finite number");
@@ -58,7 +60,8 @@ TEST_CASE("what is no table of numbers is said by line, column and reason") {
   CHECK(wrong("a,b\n") == "a.csv: holds no numbers");
   CHECK(wrong("") == "a.csv: holds no numbers");
   CHECK(wrong(std::string_view{"1,\0", 3}) == "a.csv: is no text: byte 3 is zero");
-  CHECK(wrong("\xff\xfe" "1") == "a.csv: is a text in UTF-16: export it as plain text (UTF-8)");
+  CHECK(wrong("\xff\xfe"
+              "1") == "a.csv: is a text in UTF-16: export it as plain text (UTF-8)");
 }
 
 TEST_CASE("decimal commas are told, between semicolons and where they hide between commas") {
