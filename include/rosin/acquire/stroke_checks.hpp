@@ -25,7 +25,8 @@ struct periodic_part {
   double correlation = 0, rms = 0, mean = 0;
 };
 
-[[nodiscard]] inline periodic_part periodic_part_of(std::span<const double> x, double period) {
+template <class = void>
+[[nodiscard]] periodic_part periodic_part_of(std::span<const double> x, double period) {
   const auto p = static_cast<std::size_t>(std::lround(period)), half = p / 2;
   periodic_part out;
   if (half == 0 || x.size() < 4 * p) return out;
@@ -50,7 +51,8 @@ struct periodic_part {
 }
 
 /// A channel of the bow that vibrates as a string does, beside a force on the string's end that does not.
-inline void check_bow_columns(take_check& out, const take_signals& from, double fundamental_Hz) {
+template <class = void>
+void check_bow_columns(take_check& out, const take_signals& from, double fundamental_Hz) {
   const double period = from.sample_rate_Hz / fundamental_Hz;
   const take_signal* still = nullptr;
   for (const char* end : {"near", "far"})
@@ -68,7 +70,8 @@ inline void check_bow_columns(take_check& out, const take_signals& from, double 
 }
 
 /// The ends share the mean friction as (1 - position) : position.
-inline void check_end_columns(take_check& out, const rig& r, const take& t, double near, double far) {
+template <class = void>
+void check_end_columns(take_check& out, const rig& r, const take& t, double near, double far) {
   const auto position = r.position_of(t);
   if (!position || near <= 0 || far <= 0) return;
   const double as_if = far / (near + far);
@@ -78,7 +81,8 @@ inline void check_end_columns(take_check& out, const rig& r, const take& t, doub
             "near and far are swapped, or the position counts from the wrong end");
 }
 
-inline void check_motion(take_check& out, const take_signals& from, const stroke_motion& moved, double friction_N) {
+template <class = void>
+void check_motion(take_check& out, const take_signals& from, const stroke_motion& moved, double friction_N) {
   const double end_s = out.duration_s;
   if (!moved.speed_m_s.empty()) {
     const stroke_blocks speed{moved.speed_m_s, from.sample_rate_Hz};

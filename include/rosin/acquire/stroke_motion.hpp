@@ -51,7 +51,8 @@ struct stroke_blocks {
   }
 };
 
-[[nodiscard]] inline double quantile_of(std::vector<double> x, double share) {
+template <class = void>
+[[nodiscard]] double quantile_of(std::vector<double> x, double share) {
   if (x.empty()) return 0;
   const auto at = x.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(x.size() - 1));
   std::nth_element(x.begin(), at, x.end());
@@ -59,15 +60,17 @@ struct stroke_blocks {
 }
 
 /// White noise of one sample: by differences of neighbours, of which most are quiet.
-[[nodiscard]] inline double quiet_noise(const std::vector<double>& x) {
+template <class = void>
+[[nodiscard]] double quiet_noise(const std::vector<double>& x) {
   std::vector<double> moves;
   for (std::size_t i = 1; i < x.size(); ++i) moves.push_back(std::abs(x[i] - x[i - 1]));
   return quantile_of(std::move(moves), 0.5) / 0.9539;  // sqrt(2) times the median of |normal|
 }
 
 /// Level while the bow is off the string, and which blocks those are.
-[[nodiscard]] inline std::optional<nominal> lifted_level(const stroke_blocks& normal, double noise, double string_noise,
-                                                         const stroke_blocks& string) {
+template <class = void>
+[[nodiscard]] std::optional<nominal> lifted_level(const stroke_blocks& normal, double noise, double string_noise,
+                                                  const stroke_blocks& string) {
   const double low = quantile_of(normal.mean, 0.02), high = quantile_of(normal.mean, 0.8), span = high - low;
   const double block_noise = noise / std::sqrt(static_cast<double>(normal.samples));
   if (!(span > 8 * block_noise) || !(std::abs(low) < 0.3 * high)) return std::nullopt;
@@ -99,8 +102,8 @@ template <class Holds>
   return best;
 }
 
-inline void find_steady(stroke_motion& out, const take& t, double rate_Hz, const stroke_blocks& speed,
-                        const stroke_blocks& normal) {
+template <class = void>
+void find_steady(stroke_motion& out, const take& t, double rate_Hz, const stroke_blocks& speed, const stroke_blocks& normal) {
   const std::size_t blocks = speed.mean.empty() ? normal.mean.size() : speed.mean.size();
   std::vector<double> size;
   for (const double v : speed.mean) size.push_back(std::abs(v));

@@ -79,7 +79,7 @@ TEST_CASE("positions: of the take, or of [contact], or unknown and said so") {
 TEST_CASE("what a channel measures need not be declared") {
   CHECK(test::problems_of(test::changed("speed_m_s = 0.20\n", "")) == "");  // the sled
   const std::string text = test::changed("speed_m_s = 0.20\n", "");
-  CHECK(test::problems_of(test::changed("metres_per_second_per_full_scale = 1 ", "", text)) ==
+  CHECK(test::problems_of(test::changed(", metres_per_second_per_full_scale = 1 ", " ", text)) ==
         "rig.toml:58: take[2].speed_m_s: is missing");  // but not in metres per second
   CHECK(test::problems_of(test::changed("index = 4, quantity = \"bow-speed\", metres_per_second_per_full_scale",
                                         "index = 4, quantity = \"normal-force\", newtons_per_full_scale",
