@@ -45,6 +45,7 @@ grep -q 'bow speed 0.1 m/s, normal force 0.5 N (0.04 N of offset taken off)' str
 expect 2 check strokes
 says "rig.toml:7: string.fundamental_Hz: is missing" "rig.toml:7: string.length_m: is missing" "rig.toml:7: string.tension_N: is missing"
 complete strokes
+expect 0 validate strokes/rig.toml
 expect 0 check strokes
 says "whole_1 (bow, whole_1.csv): 0.6 s at 50000 Hz" "steady from 0.200 to 0.400 s: bow speed 0.1 m/s, normal force 0.5 N" \
   "note: reads 0.04 N while the bow is off the string" "assumed: channels.near: its column is in SI units" "0 error(s), 0 warning(s)"
