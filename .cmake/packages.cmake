@@ -6,8 +6,8 @@ set(ROSIN_FFT "" CACHE STRING "FFT backend of the tool: eigen, pocketfft or fftw
 set_property(CACHE ROSIN_FFT PROPERTY STRINGS "" eigen pocketfft fftw)
 
 # What an #include line of a source file says about the package behind it.
-set(rosin_packages      tomlplusplus nlohmann_json sndfile pocketfft           fftw       matio   CLI11   valijson      openssl     alsa     jack     stk)
-set(rosin_include_marks "<toml[+][+]/" "<nlohmann/" "<sndfile" "pocketfft_hdronly" "<fftw3[.]h" "<matio[.]h" "<CLI/" "<valijson/" "<openssl/" "<alsa/" "<jack/" "<stk/")
+set(rosin_packages      tomlplusplus nlohmann_json sndfile pocketfft           fftw       matio   hdf5       CLI11   valijson      openssl     alsa     jack     stk)
+set(rosin_include_marks "<toml[+][+]/" "<nlohmann/" "<sndfile" "pocketfft_hdronly" "<fftw3[.]h" "<matio[.]h" "<hdf5[.]h" "<CLI/" "<valijson/" "<openssl/" "<alsa/" "<jack/" "<stk/")
 
 function(rosin_add_package name)
   add_library(rosin_package_${name} INTERFACE)
@@ -52,6 +52,10 @@ rosin_find_plain_package(sndfile sndfile.h LIBRARIES sndfile)
 rosin_find_plain_package(pocketfft pocketfft_hdronly.h SUFFIXES gemmi/third_party pocketfft)
 rosin_find_plain_package(fftw fftw3.h LIBRARIES fftw3 fftw3f)
 rosin_find_plain_package(matio matio.h LIBRARIES matio)
+rosin_find_plain_package(hdf5 hdf5.h SUFFIXES hdf5/serial LIBRARIES hdf5_serial)
+if(NOT TARGET rosin_package_hdf5)  # its name without Debian's suffix
+  rosin_find_plain_package(hdf5 hdf5.h LIBRARIES hdf5)
+endif()
 rosin_find_plain_package(valijson valijson/validator.hpp)
 rosin_find_plain_package(alsa alsa/asoundlib.h LIBRARIES asound)
 rosin_find_plain_package(jack jack/jack.h LIBRARIES jack)

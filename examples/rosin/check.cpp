@@ -38,6 +38,16 @@ json to_json(const rosin::channel_check& c) {
   return out;
 }
 
+json to_json(const rosin::stroke_motion& m, double rate_Hz) {
+  const auto or_null = [](const std::optional<double>& x) { return x ? json(*x) : json(nullptr); };
+  json out{{"steady_s", {static_cast<double>(m.steady_begin) / rate_Hz, static_cast<double>(m.steady_end) / rate_Hz}},
+           {"speed_m_s", or_null(m.steady_speed_m_s)},
+           {"normal_force_N", or_null(m.steady_normal_force_N)},
+           {"normal_offset_N", nullptr}};
+  if (m.normal_offset_N) out["normal_offset_N"] = with_sd(m.normal_offset_N->value, m.normal_offset_N->sd);
+  return out;
+}
+
 json to_json(const rosin::take_check& take, const rosin::rig& rig) {
   const auto or_null = [](const std::optional<double>& x) { return x ? json(*x) : json(nullptr); };
   const auto* declared = rig.find_take(take.take);
@@ -49,6 +59,7 @@ json to_json(const rosin::take_check& take, const rosin::rig& rig) {
            {"release_s", or_null(take.release_s)},
            {"pitch_Hz", or_null(take.pitch_Hz)},
            {"quality", or_null(take.quality)}};
+  if (take.motion) out["motion"] = to_json(*take.motion, take.sample_rate_Hz);
   out["channels"] = json::array();
   for (const auto& c : take.channels) out["channels"].push_back(to_json(c));
   out["findings"] = json::array();
@@ -63,9 +74,18 @@ void print_text(const rosin::take_check& take, const rosin::rig& rig) {
   if (take.release_s) std::cout << ", released at " << in_digits(*take.release_s, "%.5f") << " s";
   if (take.pitch_Hz) std::cout << ", rings at " << in_digits(*take.pitch_Hz, "%.2f") << " Hz";
   std::cout << '\n';
+  const bool table = !rosin::table_ending(declared->file).empty();
+  if (const auto& m = take.motion; m && m->steady_end > m->steady_begin) {
+    std::cout << "  steady from " << in_digits(static_cast<double>(m->steady_begin) / take.sample_rate_Hz, "%.3f") << " to "
+              << in_digits(static_cast<double>(m->steady_end) / take.sample_rate_Hz, "%.3f") << " s:";
+    if (m->steady_speed_m_s) std::cout << " bow speed " << in_digits(*m->steady_speed_m_s, "%.4g") << " m/s";
+    if (m->steady_normal_force_N)
+      std::cout << (m->steady_speed_m_s ? "," : "") << " normal force " << in_digits(*m->steady_normal_force_N, "%.4g") << " N";
+    std::cout << '\n';
+  }
   for (const auto& c : take.channels) {
-    std::cout << "  " << c.channel << ": " << in_digits(c.lowest) << " ... " << in_digits(c.highest) << " " << c.unit << ", "
-              << in_digits(100 * c.of_full_scale, "%.0f") << " % of full scale";
+    std::cout << "  " << c.channel << ": " << in_digits(c.lowest) << " ... " << in_digits(c.highest) << " " << c.unit
+              << (table ? std::string{} : ", " + in_digits(100 * c.of_full_scale, "%.0f") + " % of full scale");
     if (c.noise_rms) std::cout << ", noise " << in_digits(*c.noise_rms) << " " << c.unit << " rms";
     std::cout << '\n';
   }

@@ -14,6 +14,7 @@ void add_compare(CLI::App& app, exit_code& result);
 void add_diagnose(CLI::App& app, exit_code& result);
 void add_fit(CLI::App& app, exit_code& result);
 void add_record(CLI::App& app, exit_code& result);
+void add_init(CLI::App& app, exit_code& result);
 void add_live(CLI::App& app, exit_code& result);
 void add_fake_rig(CLI::App& app, exit_code& result);
 void add_reconstruct(CLI::App& app, exit_code& result);

@@ -44,7 +44,8 @@ diagnosed_stroke recorded_stroke(const rosin::take& take, const rosin::take_sign
                                  const rosin::pluck_diagnosis& plucks, const rosin::band& limits) {
   diagnosed_stroke s;
   s.name = take.name, s.rate_Hz = read.sample_rate_Hz, s.hold_out = take.hold_out;
-  s.speed_m_s = take.speed_m_s.value_or(0), s.normal_force_N = take.normal_force_N.value_or(0);
+  const rosin::take bowed = rosin::with_measured(take, rosin::motion_of(take, read));
+  s.speed_m_s = bowed.speed_m_s.value_or(0), s.normal_force_N = bowed.normal_force_N.value_or(0);
   s.calibration = calibration;
   s.recorded_N = {read.near_N(), read.far_N()};
   rosin::undo_sensors(plucks.data, plucks.best, s.recorded_N, calibration.at.delay_s, s.rate_Hz, limits.stop_Hz);

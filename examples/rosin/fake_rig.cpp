@@ -198,8 +198,10 @@ rosin::outcome<fake_player> fake_player::load(const fake_rig_options& given) {
   if (!folder) return rosin::failure{folder.error()};
   fake_player out;
   for (const auto& t : folder->rig.takes) {
-    const auto read = rosin::read_audio(folder->rig.path_of(t.file));
+    const auto read = rosin::load_recording(folder->rig, t, table_formats());
     if (!read) return rosin::failure{read.error()};
+    if (read->is_table)
+      return rosin::failure{read->file + ": is a table of numbers, no converter made it: only sound files are played"};
     const int bits = read->float_format || read->bits > 24 ? 32 : read->bits > 16 ? 24 : 16;
     if (out.takes_.empty())
       out.rate_Hz_ = read->sample_rate_Hz, out.channels_ = static_cast<int>(read->channels.size()), out.bits_ = bits;

@@ -67,9 +67,12 @@ recorder_hooks hooks_of(live_chain& chain, std::optional<sled>& moves, bool reco
 
 rosin::outcome<live_chain> chain_for(const live_request& given, const rosin::rig& rig, const take_plan& take,
                                      const rosin::frame_format& format) {
-  for (const auto& c : rig.channels)
+  for (const auto& c : rig.channels) {
+    if (!c.column.empty())
+      return rosin::failure{rig.file + ": channels." + c.name + ".column: a source has no named columns: index is needed"};
     if (c.index >= format.channels)
       return rosin::failure{rig.file + ": channels." + c.name + ".index: the source has no such channel"};
+  }
   const auto calibration = read_calibration(given.calibration);
   if (!calibration) return rosin::failure{calibration.error()};
   return live_chain::design(rig, take, *calibration, format, given.live);

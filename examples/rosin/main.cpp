@@ -66,6 +66,7 @@ tool::exit_code run(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   app.footer("rosin COMMAND --help explains a command.\nExit status: 0 done, 1 something was found, 2 bad input or usage.");
+  tool::add_init(app, result);
   tool::add_check(app, result);
   tool::add_record(app, result);
   tool::add_live(app, result);

@@ -83,8 +83,16 @@ void add_rod_and_normal_force(const rosin::rig&, const rosin::take& take, const 
     r.rod_from = "speed_m_s";
   }
   if (const auto* gauge = calibrated_channel(read, rosin::quantity::normal_force)) {
+    const auto& motion = read.check.motion;
     r.normal_force_N = mean_of(gauge->values, r.known);
     r.normal_from = "channel " + gauge->sensor.name;
+    if (motion && motion->normal_channel == gauge->sensor.name && motion->steady_normal_force_N) {
+      r.normal_force_N = motion->steady_normal_force_N;
+      r.normal_from += " where the stroke is steady";
+      if (motion->normal_offset_N)
+        r.assumed.push_back(rosin::detail::sentence("offset of channel " + gauge->sensor.name, motion->normal_offset_N->value,
+                                                    "its level while the bow is off the string (N)"));
+    }
   } else if (!take.normal_force_profile_N.empty()) {
     r.normal_force_N = mean_of(from_profile(take.normal_force_profile_N, n, r.rate_Hz), r.known);
     r.normal_from = "the declared profile";

@@ -32,7 +32,10 @@ void tell_repairs(const rig_file_writer& files, std::size_t& told) {
 
 bool channels_fit(const rosin::rig& rig, const rosin::frame_format& format, std::string& why) {
   for (const auto& c : rig.channels)
-    if (c.index >= format.channels) {
+    if (!c.column.empty()) {
+      why = rig.file + ": channels." + c.name + ".column: a source has no named columns: index is needed";
+      return false;
+    } else if (c.index >= format.channels) {
       why = rig.file + ": channels." + c.name + ".index is " + std::to_string(c.index) + ", the source has " +
             std::to_string(format.channels) + " channel(s)";
       return false;

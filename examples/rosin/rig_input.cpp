@@ -3,10 +3,24 @@
 
 #include "digits.hpp"
 
+#include <rosin/adapt/table_mat.hpp>
+
 namespace tool {
 
+const rosin::table_formats& table_formats() {
+  static const rosin::table_formats all = [] {
+    auto out = rosin::plain_table_formats();
+    out.push_back({".mat", rosin::read_mat});
+#ifdef ROSIN_TOOL_HDF5
+    add_hdf5_tables(out);
+#endif
+    return out;
+  }();
+  return all;
+}
+
 rosin::outcome<rosin::rig_folder> open_rig(const std::string& path, provenance& from) {
-  auto folder = rosin::open_rig_folder(path);
+  auto folder = rosin::open_rig_folder(path, table_formats());
   if (!folder) return folder;
   if (const auto why = from.add_input(folder->rig.file)) return *why;
   for (const auto* end : {&folder->rig.near, &folder->rig.far})
@@ -16,7 +30,7 @@ rosin::outcome<rosin::rig_folder> open_rig(const std::string& path, provenance& 
 }
 
 rosin::outcome<checked_take> read_take(const rosin::rig& rig, const rosin::take& take, provenance& from) {
-  auto signals = rosin::load_take(rig, take);
+  auto signals = rosin::load_take(rig, take, table_formats());
   if (!signals) return rosin::failure{signals.error()};
   if (const auto why = from.add_input(rig.path_of(take.file))) return *why;
   auto check = rosin::check_take(rig, take, *signals);

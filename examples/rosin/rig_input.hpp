@@ -13,6 +13,12 @@
 
 namespace tool {
 
+/// The tables that this build of the tool reads.
+[[nodiscard]] const rosin::table_formats& table_formats();
+#ifdef ROSIN_TOOL_HDF5
+void add_hdf5_tables(rosin::table_formats& to);
+#endif
+
 /// The rig with the headers of all its recordings checked; the rig file itself joins the inputs.
 [[nodiscard]] rosin::outcome<rosin::rig_folder> open_rig(const std::string& path, provenance& from);
 

@@ -278,7 +278,7 @@ rosin::rig with_model(rosin::rig rig, const diagnosed_model& model) {
   auto how = rig.simulate.value_or(rosin::simulate_section{});
   double longest_s = 0;
   for (const auto& take : rig.takes) {
-    const auto recorded = rosin::read_audio_format((std::filesystem::path{rig.folder} / take.file).string());
+    const auto recorded = rosin::detail::read_format(rig, take, table_formats());
     if (!recorded || !(recorded->sample_rate_Hz > 0)) continue;
     if (!how.rate_Hz) how.rate_Hz = recorded->sample_rate_Hz;
     longest_s = std::max(longest_s, static_cast<double>(recorded->frames) / recorded->sample_rate_Hz);

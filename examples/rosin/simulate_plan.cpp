@@ -78,6 +78,7 @@ void refuse_takes(const rosin::rig& rig, double duration_s, rosin::problem_log& 
       log.add(take.line, "take \"" + take.name + "\"." + key, why);
     };
     refuse_file(take, files, log);
+    if (!rosin::table_ending(take.file).empty()) bad("file", take.file + " is a table: a simulation writes sound files, as .wav");
     if (take.kind == take_kind::quiet) continue;
     if (take.position_unknown) bad("position_unknown", "a simulation has to know where the string is touched");
     else if (!rig.position_of(take) && take.position_profile.empty())

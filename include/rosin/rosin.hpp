@@ -46,6 +46,8 @@
 #include <rosin/acquire/ringing.hpp>
 #include <rosin/acquire/sample_runs.hpp>
 #include <rosin/acquire/signal_checks.hpp>
+#include <rosin/acquire/stroke_checks.hpp>
+#include <rosin/acquire/stroke_motion.hpp>
 
 #include <rosin/condition/ac_coupling.hpp>
 #include <rosin/condition/fourier_resampler.hpp>

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <rosin/acquire/pluck_checks.hpp>
+#include <rosin/acquire/stroke_checks.hpp>
 #include <rosin/core/instantiate.hpp>
 
 #include <optional>
@@ -14,14 +15,6 @@
 namespace rosin {
 
 namespace detail {
-
-/// Within 0.8 % of a rate that converters have: what a wrong header would turn a sound recording into.
-[[nodiscard]] inline bool is_usual_rate(double rate_Hz) {
-  for (const double family : {44100.0, 48000.0, 50000.0, 51200.0, 65536.0, 64000.0})
-    for (double r = family / 8; r < 1e6; r *= 2)
-      if (std::abs(rate_Hz / r - 1) < 0.008) return true;
-  return false;
-}
 
 /// The pitch of the ringing against the declared one, and how long it lasts. A pitch that is off is an error where it looks like
 /// a wrong sampling rate or like another string; a bead can lower it by a tenth. True if it may be the declared string's.
@@ -140,31 +133,12 @@ inline void check_quiet(take_check& out, const take_signals& signals, double fun
     }
 }
 
-/// The mean forces on the two ends share the friction's, so they have one sign, that of the bow's motion.
-inline void check_bow(take_check& out, const rig& r, const take& t) {
-  const auto mean = [&](const char* name) {
-    const auto at = std::find_if(out.channels.begin(), out.channels.end(), [&](const auto& c) { return c.channel == name; });
-    const bool dc = r.channel(name) != nullptr && !r.channel(name)->ac_coupled_Hz && at != out.channels.end();
-    return dc && std::abs(at->mean) > 0.05 * at->rms ? at->mean : 0.0;
-  };
-  const double near = mean("near"), far = mean("far");
-  const double least = 0.03 * t.normal_force_N.value_or(0);
-  const bool counts = std::min(std::abs(near), std::abs(far)) > least && near != 0 && far != 0;
-  if (counts && near < 0 && far < 0)
-    out.add(severity::warning, "bowed-backwards", "", 0, out.duration_s,
-            "both mean forces are negative: the bow moves the other way",
-            "forces are positive the way the bow moves: turn both polarities round, or slips, loops and heat will be wrong");
-  else if (counts && near * far < 0)
-    out.add(severity::error, "inverted-channel", near < 0 ? "near" : "far", 0, out.duration_s,
-            "the mean forces on the two ends have opposite signs", "turn the polarity of one channel round");
-}
-
 }  // namespace detail
 
 /// All checks of one take.
 template <class = void>
 [[nodiscard]] take_check check_take(const rig& r, const take& t, const take_signals& signals) {
-  take_check out{t.name, signals.file, signals.sample_rate_Hz, signals.time_s(signals.frames()), {}, {}, {}, {}, {}};
+  take_check out{t.name, signals.file, signals.sample_rate_Hz, signals.time_s(signals.frames()), {}, {}, {}, {}, {}, {}};
   bool sound = true;
   for (const auto& s : signals.signals) sound = detail::check_signal(out, signals, s, t.kind == take_kind::quiet) && sound;
   if (!sound || out.found("silence")) return out;
@@ -175,7 +149,7 @@ template <class = void>
         9.8696 * values.bending_stiffness_Nm2->value / (values.tension_N->value * std::pow(values.length_m->value, 2));
   const detail::pluck_view view{&r, &t, &signals, r.string.fundamental_Hz, inharmonicity};
   if (t.kind == take_kind::quiet) detail::check_quiet(out, signals, r.string.fundamental_Hz);
-  else if (t.kind == take_kind::bow) detail::check_bow(out, r, t);
+  else if (t.kind == take_kind::bow) detail::check_bow(out, r, t, signals);
   else if (r.has_both_forces()) detail::check_force_pluck(out, view);
   else detail::check_other_pluck(out, view);
   return out;

@@ -47,11 +47,29 @@ struct string_section {
 /// One entry of [channels].
 struct sensor_channel {
   std::string name;
-  int index = 0;
+  int index = 0;       ///< column of the recording; -1 where `column` names it
+  std::string column;  ///< of a table, by its name (column = "..." or variable = "..."); empty where `index` tells it
   rosin::quantity quantity = rosin::quantity::termination_force;
   std::optional<double> per_full_scale;  ///< SI units of the quantity at full scale; empty: uncalibrated
+  bool scale_assumed = false;            ///< per_full_scale is 1 because tables are in SI units, nobody wrote it
   std::optional<double> gain_tolerance, ac_coupled_Hz, position;
   int line = 0;  ///< of the rig file, for messages
+};
+
+/// [files]: what tables of numbers do not tell themselves.
+struct files_section {
+  std::optional<double> rate_Hz;
+  std::optional<int> time_column;  ///< from 0; in s
+};
+
+enum class bow_kind { rod, hair };
+inline constexpr std::array bow_kind_names{"rod", "hair"};
+
+/// [bow]: what is drawn across the string. All but the kind is part of the declared model where it is given.
+struct bow_section {
+  bow_kind kind = bow_kind::rod;
+  std::optional<double> width_m, tilt;  ///< tilt: 0 even normal force, 1 none at the near edge
+  std::optional<double> hair_stiffness_N_m, hair_mass_kg, hair_resistance_Ns_m;  ///< of the whole width
 };
 
 /// [torsion]
@@ -106,10 +124,12 @@ struct take {
   take_kind kind = take_kind::quiet;
   std::string file;                                          ///< as written, relative to the rig's folder
   std::optional<double> force_N, force_tolerance, strength;  ///< pluck
-  std::optional<double> speed_m_s, normal_force_N;           ///< bow, once the stroke is steady
-  profile speed_profile_m_s, normal_force_profile_N;         ///< bow, empty where unknown
-  profile position_profile;                                  ///< bow, empty where it stays at one place of the string
-  std::optional<double> contact_position, start_s;           ///< start_s: release or onset, for simulate
+  std::optional<double> speed_m_s, normal_force_N;    ///< bow, once steady; empty: a channel measures it (stroke_motion.hpp)
+  profile speed_profile_m_s, normal_force_profile_N;  ///< bow, empty where unknown
+  profile position_profile;                           ///< bow, empty where it stays at one place of the string
+  std::optional<double> contact_position, start_s;    ///< start_s: release or onset, for simulate
+  std::optional<double> rate_Hz;                      ///< of a table that does not tell it
+  std::optional<std::pair<double, double>> steady_s;  ///< what whoever recorded it called steady: a hint
   bool position_unknown = false;
   bool hold_out = false;  ///< never fitted, only predicted
   int line = 0;           ///< of the rig file, for messages
@@ -133,12 +153,20 @@ struct rig {
   std::optional<termination> near, far;
   std::optional<model_section> model;
   std::optional<friction_section> friction;
+  std::optional<bow_section> bow;  ///< empty: a rigid rod
+  files_section files;
   std::optional<simulate_section> simulate;
   std::vector<take> takes;
 
   [[nodiscard]] const sensor_channel* channel(const std::string& name) const noexcept {
     for (const auto& c : channels)
       if (c.name == name) return &c;
+    return nullptr;
+  }
+  /// A channel that measures this in its SI unit.
+  [[nodiscard]] const sensor_channel* channel_of(rosin::quantity what) const noexcept {
+    for (const auto& c : channels)
+      if (c.quantity == what && c.per_full_scale) return &c;
     return nullptr;
   }
   [[nodiscard]] const take* find_take(const std::string& name) const noexcept {

@@ -11,6 +11,7 @@
 
 #include <rosin/acquire/rig.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -105,6 +106,8 @@ inline void derive_impedance(const string_section& s, rig_values& out) {
 /// A gain's tolerance matters only where the gain does.
 inline void note_channels_and_takes(const rig& r, rig_values& out) {
   for (const auto& c : r.channels)
+    if (c.scale_assumed) out.assumed.push_back("channels." + c.name + ": its column is in SI units, no scale given");
+  for (const auto& c : r.channels)
     if (c.quantity == quantity::termination_force && !c.gain_tolerance)
       out.assumed.push_back(sentence("channels." + c.name + ".gain_tolerance", default_gain_tolerance, "none given"));
   for (const auto& t : r.takes)
@@ -113,6 +116,8 @@ inline void note_channels_and_takes(const rig& r, rig_values& out) {
 }
 
 inline void note_model(const rig& r, rig_values& out) {
+  if (!r.bow && std::any_of(r.takes.begin(), r.takes.end(), [](const take& t) { return t.kind == take_kind::bow; }))
+    out.assumed.push_back("bow = a rigid rod, no [bow]");
   if (!r.near) out.assumed.push_back("terminations.near = rigid, none given");
   if (!r.far) out.assumed.push_back("terminations.far = rigid, none given");
   if (!r.model) out.assumed.push_back("model.physics = none, no [model]");

@@ -10,6 +10,7 @@
 #include <rosin/acquire/hum.hpp>
 #include <rosin/acquire/recording.hpp>
 #include <rosin/acquire/sample_runs.hpp>
+#include <rosin/acquire/stroke_motion.hpp>
 
 #include <cstdio>
 
@@ -32,6 +33,7 @@ struct take_check {
   std::vector<finding> findings;
   std::optional<double> release_s;  ///< pluck: when the wire broke
   std::optional<double> pitch_Hz, quality;
+  std::optional<stroke_motion> motion;  ///< of a stroke; what is sample by sample in it is left out
 
   void add(severity level, const std::string& kind, const std::string& channel, double start_s, double end_s,
            const std::string& what, const std::string& advice) {

@@ -22,8 +22,9 @@ struct audio_format {
   double sample_rate_Hz = 0;
   int channels = 0, bits = 0;
   bool float_format = false;
-  std::uint64_t frames = 0;
-  bool length_told = true;  ///< by the header; if not, all was read that is there
+  std::uint64_t frames = 0;          ///< 0: of a table, which has to be read to tell it
+  bool length_told = true;           ///< by the header; if not, all was read that is there
+  std::vector<std::string> columns;  ///< names of a table's columns, where it has them
 };
 
 namespace detail {
@@ -135,8 +136,13 @@ inline std::size_t read_frames(SNDFILE* file, const SF_INFO& info, std::vector<s
   if (!opened) return failure{opened.error()};
   const SF_INFO& info = opened->info;
   const int bits = detail::sample_bits(info.format);
-  return audio_format{static_cast<double>(info.samplerate),    info.channels,      std::abs(bits), bits < 0,
-                      static_cast<std::uint64_t>(info.frames), opened->length_told};
+  return audio_format{static_cast<double>(info.samplerate),
+                      info.channels,
+                      std::abs(bits),
+                      bits < 0,
+                      static_cast<std::uint64_t>(info.frames),
+                      opened->length_told,
+                      {}};
 }
 
 /// The whole recording.
@@ -145,7 +151,7 @@ inline std::size_t read_frames(SNDFILE* file, const SF_INFO& info, std::vector<s
   if (!opened) return failure{opened.error()};
   const SF_INFO& info = opened->info;
   const int bits = detail::sample_bits(info.format);
-  recording out{path, static_cast<double>(info.samplerate), {}, std::abs(bits), bits < 0};
+  recording out{path, static_cast<double>(info.samplerate), {}, std::abs(bits), bits < 0, {}, false};
   const std::size_t frames = detail::read_frames(opened->file.get(), info, out.channels);
   const auto promised = static_cast<std::size_t>(info.frames);
   if (frames == 0) return failure{path + ": holds no samples that can be read"};

@@ -8,6 +8,7 @@
 
 #include <rosin/adapt/audio_sndfile.hpp>
 #include <rosin/adapt/rig_toml.hpp>
+#include <rosin/adapt/table_recording.hpp>
 
 namespace rosin {
 
@@ -23,10 +24,8 @@ inline void check_format(const rig_folder& folder, const take& t, const audio_fo
   const std::string place = "take \"" + t.name + "\".file";
   const std::string file = folder.rig.path_of(t.file);
   for (const auto& c : folder.rig.channels)
-    if (c.index >= format.channels)
-      log.add(t.line, place,
-              file + ": has " + std::to_string(format.channels) + " channel(s), but channels." + c.name + ".index is " +
-                  std::to_string(c.index));
+    if (const auto column = column_of(c, static_cast<std::size_t>(format.channels), format.columns); !column)
+      log.add(t.line, place, file + ": " + column.error());
   const int first = folder.formats.front().channels;
   if (first > 0 && first != format.channels)
     log.add(t.line, place,
@@ -40,7 +39,10 @@ inline void check_format(const rig_folder& folder, const take& t, const audio_fo
 inline void note_unnamed_channels(rig_folder& folder) {
   const auto& channels = folder.rig.channels;
   for (int i = 0; !folder.formats.empty() && i < folder.formats.front().channels; ++i)
-    if (std::none_of(channels.begin(), channels.end(), [i](const auto& c) { return c.index == i; }))
+    if (i != folder.rig.files.time_column && std::none_of(channels.begin(), channels.end(), [&](const auto& c) {
+          const auto at = column_of(c, static_cast<std::size_t>(folder.formats.front().channels), folder.formats.front().columns);
+          return at && *at == static_cast<std::size_t>(i);
+        }))
       folder.notes.push_back("channel " + std::to_string(i) + " of the recordings is not named in [channels]: it is not used");
 }
 
@@ -60,16 +62,36 @@ inline void note_untold_lengths(rig_folder& folder) {
                              std::to_string(folder.formats[i].frames) + " frames");
 }
 
+/// What the beginning of a table tells.
+[[nodiscard]] inline outcome<audio_format> read_table_format(const std::string& path, const table_clock& clock,
+                                                             const table_formats& formats) {
+  constexpr std::size_t enough_rows = 100;
+  auto table = read_table(path, formats, enough_rows);
+  if (!table) return failure{table.error()};
+  const auto rate = rate_of(*table, path, clock);
+  if (!rate) return failure{rate.error()};
+  audio_format out{*rate, static_cast<int>(table->data.columns.size()), 64, true, 0, true, {}};
+  for (auto& c : table->data.columns) out.columns.push_back(std::move(c.name));
+  return out;
+}
+
+/// What the head of a take's file says, whatever it is.
+[[nodiscard]] inline outcome<audio_format> read_format(const rig& r, const take& t, const table_formats& formats) {
+  if (table_ending(t.file).empty()) return read_audio_format(r.path_of(t.file));
+  return read_table_format(r.path_of(t.file), clock_of(r, t), formats);
+}
+
 }  // namespace detail
 
 /// The rig and the headers of its recordings, or everything that is wrong with them.
-[[nodiscard]] inline outcome<rig_folder> open_rig_folder(const std::string& path) {
+[[nodiscard]] inline outcome<rig_folder> open_rig_folder(const std::string& path,
+                                                         const table_formats& formats = plain_table_formats()) {
   auto loaded = load_rig(path);
   if (!loaded) return failure{loaded.error()};
   rig_folder out{*std::move(loaded), {}, {}};
   problem_log log{out.rig.file};
   for (const take& t : out.rig.takes) {
-    const auto format = read_audio_format(out.rig.path_of(t.file));
+    const auto format = detail::read_format(out.rig, t, formats);
     if (!format) log.add(t.line, "take \"" + t.name + "\".file", format.error());
     out.formats.push_back(format ? *format : audio_format{});
     if (format) detail::check_format(out, t, *format, log);
@@ -81,11 +103,21 @@ inline void note_untold_lengths(rig_folder& folder) {
   return out;
 }
 
+/// A take's file, whatever it is.
+[[nodiscard]] inline outcome<recording> load_recording(const rig& r, const take& t,
+                                                       const table_formats& formats = plain_table_formats()) {
+  const std::string path = r.path_of(t.file);
+  auto read = table_ending(t.file).empty() ? read_audio(path) : read_table_recording(path, clock_of(r, t), formats);
+  if (read) return read;
+  return failure{r.file + ":" + std::to_string(t.line) + ": take \"" + t.name + "\".file: " + read.error()};
+}
+
 /// A take read and in the units of its sensors.
-[[nodiscard]] inline outcome<take_signals> load_take(const rig& r, const take& t) {
-  const auto audio = read_audio(r.path_of(t.file));
-  if (!audio) return failure{r.file + ":" + std::to_string(t.line) + ": take \"" + t.name + "\".file: " + audio.error()};
-  return signals_of(r, t, *audio);
+[[nodiscard]] inline outcome<take_signals> load_take(const rig& r, const take& t,
+                                                     const table_formats& formats = plain_table_formats()) {
+  const auto read = load_recording(r, t, formats);
+  if (!read) return failure{read.error()};
+  return signals_of(r, t, *read);
 }
 
 }  // namespace rosin

@@ -82,6 +82,30 @@ inline friction_section read_friction(toml_fields fields) {
   return f;
 }
 
+inline files_section read_files(toml_fields fields) {
+  files_section f;
+  f.rate_Hz = fields.number("rate_Hz", {1, 1e9});
+  if (const auto column = fields.integer("time_column", 0, 1023)) f.time_column = static_cast<int>(*column);
+  fields.unknown();
+  return f;
+}
+
+inline bow_section read_bow_section(toml_fields fields) {
+  bow_section b;
+  if (!fields.has("kind")) fields.missing("kind");
+  if (const auto kind = fields.choice("kind", bow_kind_names)) b.kind = static_cast<bow_kind>(*kind);
+  b.width_m = fields.number("width_m", zero_to(0.1));
+  b.tilt = fields.number("tilt", {0, 1});
+  b.hair_stiffness_N_m = fields.number("hair_stiffness_N_m", up_to(1e9));
+  b.hair_mass_kg = fields.number("hair_mass_kg", zero_to(1));
+  b.hair_resistance_Ns_m = fields.number("hair_resistance_Ns_m", zero_to(1e5));
+  if (b.kind == bow_kind::rod)
+    for (const char* key : {"hair_stiffness_N_m", "hair_mass_kg", "hair_resistance_Ns_m"})
+      fields.refuse(key, "belongs to a bow of kind \"hair\"");
+  fields.unknown();
+  return b;
+}
+
 inline simulate_section read_simulate(toml_fields fields) {
   simulate_section s;
   s.rate_Hz = fields.number("rate_Hz", {1e3, 1e7});

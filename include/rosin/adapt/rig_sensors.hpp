@@ -40,25 +40,41 @@ inline quantity read_quantity(toml_fields& fields, const std::string& name) {
   return what;
 }
 
-/// The one scale that belongs to the quantity; any other is refused by name.
-inline void read_scale(toml_fields& fields, sensor_channel& c) {
+/// The one scale that belongs to the quantity; any other is refused by name. Tables are in SI units where none is given.
+inline void read_scale(toml_fields& fields, sensor_channel& c, bool tables) {
   const std::string_view own = scale_key(c.quantity);
-  if (c.quantity == quantity::termination_force && !fields.has(own)) fields.missing(own);
+  if (c.quantity == quantity::termination_force && !tables && !fields.has(own)) fields.missing(own);
   for (const std::string_view key :
        {"newtons_per_full_scale", "metres_per_second_per_full_scale", "metres_per_full_scale", "pascals_per_full_scale"}) {
     if (key == own) c.per_full_scale = fields.number(key, up_to(1e9));
     else if (fields.has(key)) fields.refuse(key, "is no scale of the quantity " + name_of(c.quantity));
   }
+  const bool measures_bow = c.quantity == quantity::normal_force || c.quantity == quantity::bow_speed;
+  c.scale_assumed = tables && !fields.has(own) && (measures_bow || c.quantity == quantity::termination_force);
+  if (c.scale_assumed) c.per_full_scale = 1;
 }
 
-inline sensor_channel read_channel(const std::string& name, toml_fields fields) {
+/// By its place among the columns, or by its name in a table (`variable` in a file of variables).
+inline void read_column(toml_fields& fields, sensor_channel& c) {
+  c.index = static_cast<int>(fields.integer("index", 0, 1023).value_or(-1));
+  std::string_view told = fields.has("index") ? "index" : "";
+  for (const char* key : {"column", "variable"}) {
+    const auto name = fields.text(key);
+    if (!fields.has(key)) continue;
+    if (!told.empty()) fields.refuse(key, "contradicts " + std::string{told} + ", which stands beside it");
+    else c.column = name.value_or("");
+    told = key;
+  }
+  if (told.empty()) fields.missing("index");
+}
+
+inline sensor_channel read_channel(const std::string& name, toml_fields fields, bool tables) {
   sensor_channel c;
   c.name = name;
   c.line = fields.line();
-  if (!fields.has("index")) fields.missing("index");
-  c.index = static_cast<int>(fields.integer("index", 0, 1023).value_or(-1));
+  read_column(fields, c);
   c.quantity = read_quantity(fields, name);
-  read_scale(fields, c);
+  read_scale(fields, c, tables);
   c.gain_tolerance = fields.number("gain_tolerance", {0, 1, false, true});
   c.ac_coupled_Hz = fields.number("ac_coupled_Hz", up_to(1e4));
   if (c.quantity == quantity::string_velocity || c.quantity == quantity::string_displacement)
@@ -68,11 +84,12 @@ inline sensor_channel read_channel(const std::string& name, toml_fields fields) 
   return c;
 }
 
-inline std::vector<sensor_channel> read_channels(toml_fields fields, const toml::table& table) {
+/// `tables`: the takes are tables of numbers.
+inline std::vector<sensor_channel> read_channels(toml_fields fields, const toml::table& table, bool tables) {
   std::vector<sensor_channel> out;
   for (const auto& [key, node] : table) {
     const std::string name{key.str()};
-    if (const auto* one = node.as_table()) out.push_back(read_channel(name, {*one, fields.path(name), fields.log()}));
+    if (const auto* one = node.as_table()) out.push_back(read_channel(name, {*one, fields.path(name), fields.log()}, tables));
     else fields.wrong_type(node, fields.path(name), "a table, as { index = 0, ... }");
   }
   if (table.empty()) fields.log().add(fields.line(), fields.where(), "names no channel");

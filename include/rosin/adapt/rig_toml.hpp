@@ -77,7 +77,7 @@ inline void read_schema(toml_fields& root) {
 }
 
 /// Each table that is there, through its reader.
-inline void read_tables(toml_fields& root, rig& r) {
+inline void read_tables(toml_fields& root, rig& r, bool tables) {
   const auto under = [&](const char* key) {
     const toml::table* table = root.table(key);
     return table != nullptr ? std::optional<toml_fields>{toml_fields{*table, key, root.log()}} : std::nullopt;
@@ -87,7 +87,7 @@ inline void read_tables(toml_fields& root, rig& r) {
   const std::size_t before = root.log().size();
   if (auto t = under("string")) r.string = read_string(*t);
   const bool sound = root.log().size() == before;
-  if (auto t = under("channels")) r.channels = read_channels(*t, *root.table("channels"));
+  if (auto t = under("channels")) r.channels = read_channels(*t, *root.table("channels"), tables);
   if (auto t = under("string")) check_string(*t, r, sound);
   if (auto t = under("contact")) read_contact(*t, r);
   if (auto t = under("torsion")) r.torsion = read_torsion(*t);
@@ -98,6 +98,8 @@ inline void read_tables(toml_fields& root, rig& r) {
   }
   if (auto t = under("model")) r.model = read_model(*t);
   if (auto t = under("friction")) r.friction = read_friction(*t);
+  if (auto t = under("bow")) r.bow = read_bow_section(*t);
+  if (auto t = under("files")) r.files = read_files(*t);
   if (auto t = under("simulate")) r.simulate = read_simulate(*t);
 }
 
@@ -142,8 +144,8 @@ inline rig read_root(const toml::table& table, const std::string& file, problem_
   toml_fields root{table, "", log};
   read_schema(root);
   r.title = root.text("title");
-  read_tables(root, r);
-  r.takes = read_takes(root, r.has_both_forces(), r.contact_position.has_value());
+  read_tables(root, r, are_tables(table));
+  r.takes = read_takes(root, r);
   root.unknown();
   return r;
 }

@@ -11,6 +11,7 @@
 
 #include <rosin/acquire/checks.hpp>
 #include <rosin/acquire/ringing.hpp>
+#include <rosin/acquire/stroke_motion.hpp>
 #include <rosin/calibrate/calibration.hpp>
 #include <rosin/calibrate/damped_lines.hpp>
 #include <rosin/calibrate/damped_spectrum.hpp>

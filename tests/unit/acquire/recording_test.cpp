@@ -59,6 +59,30 @@ TEST_CASE("too few channels: file, key and line are named") {
   CHECK(s.error() == "a.wav: has 2 channel(s), but rig.toml:14: channels.far.index is 2");
 }
 
+TEST_CASE("a table's column by its name; its full scale is its largest magnitude") {
+  rosin::recording table = stereo();
+  table.columns = {"a", "b"}, table.is_table = true;
+  rosin::rig r;
+  r.file = "rig.toml";
+  r.channels = {channel("near", -1, 2)};
+  r.channels[0].column = "b";
+  const auto s = rosin::signals_of(r, rosin::take{}, table);
+  REQUIRE(s);
+  CHECK(s->near_N() == std::vector<double>{0.25, 0});
+  CHECK(s->find("near")->full_scale == 0.25);
+  r.channels[0].column = "c";
+  CHECK(rosin::signals_of(r, rosin::take{}, table).error() ==
+        "a.wav: has the columns a, b, but rig.toml:0: channels.near.column is \"c\"");
+  CHECK(rosin::signals_of(r, rosin::take{}, stereo()).error() ==
+        "a.wav: has no named columns, but rig.toml:0: channels.near.column is \"c\"");
+}
+
+TEST_CASE("which files are tables") {
+  for (const char* name : {"a.csv", "A.CSV", "b/c.tsv", "x.npy", "x.mat", "x.h5", "x.hdf5"})
+    CHECK_FALSE(rosin::table_ending(name).empty());
+  for (const char* name : {"a.wav", "csv", ".csv", "a.csv.wav", ""}) CHECK(rosin::table_ending(name).empty());
+}
+
 TEST_CASE("the step of a converter") {
   rosin::recording r = stereo();
   CHECK(r.step() == std::ldexp(1.0, -15));

@@ -119,3 +119,47 @@ TEST_CASE("a take that was changed after the folder was opened") {
   REQUIRE_FALSE(take);
   CHECK(take.error().find("rig.toml:11: take \"a\".file: ") != std::string::npos);
 }
+
+TEST_CASE("takes in tables: by index, by name, with a column of times; only the beginning is read to open them") {
+  constexpr std::string_view tables = R"(schema = 1
+[string]
+length_m = 0.7
+tension_N = 145
+fundamental_Hz = 98
+[channels]
+near = { column = "near, N" }
+far = { index = 2, newtons_per_full_scale = 10 }
+[files]
+time_column = 0
+[[take]]
+name = "whole_1"
+kind = "bow"
+file = "whole_1.csv"
+contact_position = 0.1
+speed_m_s = 0.1
+normal_force_N = 1
+)";
+  const test::temporary_folder folder;
+  folder.write("rig.toml", tables);
+  std::string text = "t;near, N;far\n";
+  for (int i = 0; i < 3000; ++i) text += std::to_string(i) + "e-3;" + std::to_string(i % 7) + ";" + std::to_string(i % 5) + "\n";
+  folder.write("whole_1.csv", text);
+  auto open = rosin::open_rig_folder(folder.str());
+  CHECK(open.error() == "");
+  REQUIRE(open);
+  CHECK(open->notes.empty());
+  CHECK(open->formats[0].sample_rate_Hz == 1000);
+  const auto take = rosin::load_take(open->rig, open->rig.takes[0]);
+  CHECK(take.error() == "");
+  REQUIRE(take);
+  CHECK(take->near_N()[6] == 6);
+  CHECK(take->far_N()[4] == 40);
+  CHECK(take->float_format);
+  folder.write("whole_1.csv", text + "3000e-3;1\n");
+  CHECK(rosin::open_rig_folder(folder.str()));
+  CHECK(rosin::load_take(open->rig, open->rig.takes[0]).error().find("whole_1.csv:3002: has 2 column(s), the first line has 3") !=
+        std::string::npos);
+  folder.write("whole_1.csv", "t,x,far\n0,1,2\n1e-3,1,2\n2e-3,1,2\n");
+  CHECK(rosin::open_rig_folder(folder.str()).error().find("has the columns t, x, far, but channels.near.column is \"near, N\"") !=
+        std::string::npos);
+}

@@ -118,7 +118,34 @@ TEST_CASE("[friction] and [simulate]") {
       {"noise_N = 3e-4", "noise_N = -1", "rig.toml:42: simulate.noise_N: must be at least 0 and at most 100, is -1"},
       {"seed = 1", "seed = -1", "rig.toml:43: simulate.seed: must be 0 ... 9223372036854775807, is -1"},
       {"seed = 1", "nominal_scatter = 1", "rig.toml:43: simulate.nominal_scatter: must be true or false"},
+      {"[contact]", "[files]\nrate_Hz = 0\n[contact]", "rig.toml:19: files.rate_Hz: must be at least 1 and at most 1e+09, is 0"},
+      {"[contact]", "[files]\ntime_column = -1\n[contact]", "rig.toml:19: files.time_column: must be 0 ... 1023, is -1"},
+      {"[contact]", "[bow]\nwidth_m = 0.01\n[contact]", "rig.toml:18: bow.kind: is missing"},
+      {"[contact]", "[bow]\nkind = \"hare\"\n[contact]", "rig.toml:19: bow.kind: unknown name \"hare\"; did you mean hair?"},
+      {"[contact]", "[bow]\nkind = \"hair\"\nwidth_m = 10\n[contact]",
+       "rig.toml:20: bow.width_m: must be at least 0 and at most 0.1, is 10"},
+      {"[contact]", "[bow]\nkind = \"hair\"\ntilt = 2\n[contact]",
+       "rig.toml:20: bow.tilt: must be at least 0 and at most 1, is 2"},
+      {"[contact]", "[bow]\nkind = \"rod\"\nhair_mass_kg = 0.006\n[contact]",
+       "rig.toml:20: bow.hair_mass_kg: belongs to a bow of kind \"hair\""},
       {"seed = 1", "sede = 1", "rig.toml:43: simulate.sede: unknown key; did you mean seed?"},
   };
   CHECK_BAD_KEYS(rows)
+}
+
+TEST_CASE("[bow]: a ribbon of hair; left out, a rigid rod") {
+  CHECK_FALSE(rosin::parse_rig(test::rig_text, "rig.toml")->bow);
+  const auto r = rosin::parse_rig(test::changed("[contact]",
+                                                "[bow]\nkind = \"hair\"\nwidth_m = 0.01\nhair_stiffness_N_m = 1.1e5\n"
+                                                "hair_mass_kg = 0.0062\nhair_resistance_Ns_m = 10\ntilt = 0.5\n[contact]"),
+                                  "rig.toml");
+  CHECK(r.error() == "");
+  REQUIRE(r);
+  REQUIRE(r->bow);
+  CHECK(r->bow->kind == rosin::bow_kind::hair);
+  CHECK(r->bow->width_m == 0.01);
+  CHECK(r->bow->hair_stiffness_N_m == 1.1e5);
+  CHECK(r->bow->hair_mass_kg == 0.0062);
+  CHECK(r->bow->hair_resistance_Ns_m == 10.0);
+  CHECK(r->bow->tilt == 0.5);
 }

@@ -89,3 +89,50 @@ TEST_CASE("[terminations]: rigid, fit, modes or a file") {
   };
   CHECK_BAD_KEYS(rows)
 }
+
+TEST_CASE("a column by its name instead of its place; a variable is one") {
+  const auto sled = [](const std::string& how) { return test::changed("sled = { index = 4,", "sled = { " + how); };
+  for (const char* key : {"column", "variable"}) {
+    const auto r = rosin::parse_rig(sled(std::string{key} + " = \"v (m/s)\","), "rig.toml");
+    CHECK(r.error() == "");
+    REQUIRE(r);
+    CHECK(r->channel("sled")->column == "v (m/s)");
+    CHECK(r->channel("sled")->index == -1);
+  }
+  CHECK(test::problems_of(sled("")) == "rig.toml:16: channels.sled.index: is missing");
+  CHECK(test::problems_of(sled("index = 4, column = \"v\",")) ==
+        "rig.toml:16: channels.sled.column: contradicts index, which stands beside it");
+  CHECK(test::problems_of(sled("column = 4,")) == "rig.toml:16: channels.sled.column: must be a text in quotes");
+}
+
+TEST_CASE("where the takes are tables, columns are in SI units unless a scale is given") {
+  constexpr std::string_view tables = R"(schema = 1
+[string]
+length_m = 0.7
+tension_N = 145
+fundamental_Hz = 98
+[channels]
+normal = { index = 0, quantity = "normal-force" }
+bow = { index = 1, quantity = "bow-speed", metres_per_second_per_full_scale = 0.001 }
+near = { index = 2 }
+far = { index = 3 }
+[files]
+rate_Hz = 50000
+[[take]]
+name = "whole_1"
+kind = "bow"
+file = "whole_1.csv"
+contact_position = 0.1
+)";
+  const auto r = rosin::parse_rig(tables, "rig.toml");
+  CHECK(r.error() == "");
+  REQUIRE(r);
+  CHECK(r->channel("near")->per_full_scale == 1.0);
+  CHECK(r->channel("near")->scale_assumed);
+  CHECK(r->channel("bow")->per_full_scale == 0.001);
+  CHECK_FALSE(r->channel("bow")->scale_assumed);
+  CHECK(test::problems_of(test::changed("whole_1.csv", "whole_1.wav", tables)) ==
+        "rig.toml:9: channels.near.newtons_per_full_scale: is missing\n"
+        "rig.toml:10: channels.far.newtons_per_full_scale: is missing\n"
+        "rig.toml:13: take[0].normal_force_N: is missing");
+}

@@ -33,7 +33,17 @@ TEST_CASE("[[take]]: each key, its type, range and name") {
        "rig.toml:51: take[0].normal_force_N: does not belong to a take of kind pluck"},
       {"file = \"quiet.wav\"", "file = \"quiet.wav\"\nforce_N = 1",
        "rig.toml:57: take[1].force_N: does not belong to a take of kind quiet"},
-      {"speed_m_s = 0.20\n", "", "rig.toml:58: take[2].speed_m_s: is missing"},
+      {"hold_out = true", "steady_s = [0.2]", "rig.toml:65: take[2].steady_s: must be a pair of times, as [1.5, 1.9]"},
+      {"hold_out = true", "steady_s = 0.2", "rig.toml:65: take[2].steady_s: must be a pair of times, as [1.5, 1.9]"},
+      {"hold_out = true", "steady_s = [0.2, 0.2]", "rig.toml:65: take[2].steady_s: ends before it begins"},
+      {"hold_out = true", "steady_s = [-1, 0.2]",
+       "rig.toml:65: take[2].steady_s[0]: must be at least 0 and at most 1000000, is -1"},
+      {"contact_position = 0.25", "steady_s = [0, 1]", "rig.toml:51: take[0].steady_s: does not belong to a take of kind pluck"},
+      {"hold_out = true", "rate_Hz = 50000",
+       "rig.toml:65: take[2].rate_Hz: belongs to a table of numbers: this file tells its own rate"},
+      {"file = \"bow-1.wav\"", "file = \"bow-1.csv\"",
+       "rig.toml:58: take[2].rate_Hz: is missing, and there is neither [files] rate_Hz nor [files] time_column: a table does not "
+       "tell its rate"},
       {"speed_m_s = 0.20", "speed_m_s = -0.20", "rig.toml:62: take[2].speed_m_s: must be larger than 0 and at most 100, is -0.2"},
       {"normal_force_N = 0.30\n", "", "rig.toml:58: take[2].normal_force_N: is missing"},
       {"normal_force_N = 0.30", "normal_force_N = 0",
@@ -64,6 +74,28 @@ TEST_CASE("positions: of the take, or of [contact], or unknown and said so") {
   CHECK(test::problems_of(test::changed("hold_out = true", "position_unknown = true", without)) == "");
   CHECK(test::problems_of(test::changed("hold_out = true", "contact_position = 0.1", without)) == "");
   CHECK(test::problems_of(test::changed("hold_out = true", "position_profile = [[0, 0.1], [0.2, 0.15]]", without)) == "");
+}
+
+TEST_CASE("what a channel measures need not be declared") {
+  CHECK(test::problems_of(test::changed("speed_m_s = 0.20\n", "")) == "");  // the sled
+  const std::string text = test::changed("speed_m_s = 0.20\n", "");
+  CHECK(test::problems_of(test::changed(", metres_per_second_per_full_scale = 1 ", " ", text)) ==
+        "rig.toml:58: take[2].speed_m_s: is missing");  // but not in metres per second
+  CHECK(test::problems_of(test::changed("index = 4, quantity = \"bow-speed\", metres_per_second_per_full_scale",
+                                        "index = 4, quantity = \"normal-force\", newtons_per_full_scale",
+                                        test::changed("normal_force_N = 0.30\n", ""))) == "");
+}
+
+TEST_CASE("a table: its rate in the take, in [files], or a column of times") {
+  const std::string text = test::changed("file = \"bow-1.wav\"", "file = \"bow-1.csv\"");
+  const auto own =
+      rosin::parse_rig(test::changed("hold_out = true", "rate_Hz = 50000\nsteady_s = [0.1, 0.25]", text), "rig.toml");
+  CHECK(own.error() == "");
+  REQUIRE(own);
+  CHECK(own->takes[2].rate_Hz == 50000.0);
+  CHECK(own->takes[2].steady_s == std::pair{0.1, 0.25});
+  CHECK(test::problems_of(test::changed("[contact]", "[files]\nrate_Hz = 50000\n[contact]", text)) == "");
+  CHECK(test::problems_of(test::changed("[contact]", "[files]\ntime_column = 0\n[contact]", text)) == "");
 }
 
 TEST_CASE("no takes, or something else in their place") {
