@@ -213,12 +213,12 @@ std::string live_chain::summary() const {
 void add_live_options(CLI::App& command, live_options& given) {
   command.add_option("--pass", given.pass_Hz, "End of the pass band; 0.30 of the sampling rate if not given")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_option("--stop", given.stop_Hz, "Nothing is left from here on; 0.45 of the sampling rate")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_option("--error", given.error, "Of the filters, relative; a larger one makes the result come earlier")
-      ->check(CLI::Range(1e-6, 0.1))
+      ->check(between(1e-6, 0.1))
       ->capture_default_str();
   command
       .add_option("--out", given.out,

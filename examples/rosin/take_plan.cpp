@@ -5,7 +5,7 @@
 #include <rosin/adapt/rig_toml.hpp>
 #include <rosin/hardware/durable_text.hpp>
 
-#include <fstream>
+#include <locale>
 #include <sstream>
 
 namespace tool {
@@ -28,10 +28,21 @@ std::string without_takes(const std::string& text) {
   return out;
 }
 
+/// The same whatever way the takes are written in, [[ take ]] or in line: what the lines do not tell apart is written anew.
+rosin::outcome<std::string> declared_without_takes(const std::string& text, const std::string& file) {
+  auto root = rosin::detail::parse_toml(text, file);
+  if (!root) return rosin::failure{root.error()};
+  root->erase("take");
+  std::string out = without_takes(text);
+  if (const auto again = rosin::detail::parse_toml(out, file); again && *again == *root) return out;
+  std::ostringstream anew;
+  anew.imbue(std::locale::classic());
+  anew << *root << '\n';
+  return std::move(anew).str();
+}
+
 std::string figure(double x) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", x);
-  std::string out = text.data();
+  std::string out = rosin::number_text(x, "%.9g");
   if (out.find_first_of(".en") == std::string::npos) out += ".0";
   return out;
 }
@@ -39,8 +50,13 @@ std::string figure(double x) {
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) {
+      constexpr std::string_view digits = "0123456789abcdef";
+      out += std::string{"\\u00"} + digits[code >> 4U] + digits[code & 15U];
+    } else {
+      out += (c == '"' || c == '\\' ? "\\" : "") + std::string{c};
+    }
   }
   return out + '"';
 }
@@ -69,16 +85,16 @@ void add_take_options(CLI::App& command, take_plan& given) {
       ->capture_default_str();
   command.add_option("--wire", given.force_N, "Of a pluck: nominal breaking force of the wire")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--wire-tolerance", given.force_tolerance, "Its relative tolerance")->check(CLI::Range(0.0, 1.0));
+      ->check(positive());
+  command.add_option("--wire-tolerance", given.force_tolerance, "Its relative tolerance")->check(between(0.0, 1.0));
   command.add_option("--position", given.position, "Of bow or pluck, where it is not the rig's [contact]")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(between(0.0, 1.0));
   command.add_option("--speed", given.speed_m_s, "Of a bow: the sled's speed once it is steady")
       ->type_name("M/S")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_option("--normal-force", given.normal_force_N, "Of a bow: force of the rod on the string")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_flag("--hold-out", given.hold_out, "Never fitted, only predicted");
 }
 
@@ -91,13 +107,15 @@ rosin::outcome<rig_file_writer> rig_file_writer::open(const std::string& folder,
   if (!there && like.empty())
     return rosin::failure{out.path() + ": is not there; --like names a rig file that describes string and channels"};
   const std::string from = there ? out.path() : fs::is_directory(like, error) ? like + "/rig.toml" : like;
-  auto text = read_text(from);
+  auto text = rosin::read_file(from);
   if (!text) return rosin::failure{text.error()};
   out.text_ = *std::move(text);
   if (!there) {
     auto declared = declaration(out.text_, from);
     if (!declared) return rosin::failure{declared.error()};
-    out.text_ = without_takes(*declared);
+    auto string_and_channels = declared_without_takes(*declared, from);
+    if (!string_and_channels) return rosin::failure{string_and_channels.error()};
+    out.text_ = *std::move(string_and_channels);
     fs::create_directories(folder, error);
     if (error) return rosin::failure{folder + ": " + error.message()};
   }
@@ -118,7 +136,11 @@ rosin::outcome<rosin::rig> rig_file_writer::with(const take_plan& take) const {
   const bool unfinished = take.kind == "bow"     ? !take.speed_m_s || !take.normal_force_N
                           : take.kind == "pluck" ? !take.force_N
                                                  : false;
-  if (!rig && unfinished && rosin::parse_rig(text_, path()))
+  take_plan finished = take;
+  finished.speed_m_s = finished.normal_force_N = finished.force_N = std::nullopt;
+  if (take.kind == "bow") finished.speed_m_s = finished.normal_force_N = 1;
+  if (take.kind == "pluck") finished.force_N = 1;
+  if (!rig && unfinished && rosin::parse_rig(text_ + block(finished, {}), path()))  // nothing else is amiss
     return rosin::failure{take.kind == "bow" ? "a bowed take needs --speed and --normal-force"
                                              : "a pluck needs --wire, its nominal force"};
   return rig;
