@@ -33,7 +33,7 @@ CLI::Validator number_that(Holds holds, const std::string& wanted, const std::st
             const auto value = rosin::number_from(text);
             if (!value || !std::isfinite(*value)) {
               const bool comma = text.find(',') != std::string::npos;
-              return "\"" + text + "\" is no finite number" + (comma ? "; the decimal mark is a point" : "");
+              return text + " is no finite number" + (comma ? "; the decimal mark is a point" : "");
             }
             return holds(*value) ? std::string{} : "must be " + wanted + ", is " + text;
           },

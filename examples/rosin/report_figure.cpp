@@ -41,9 +41,9 @@ std::optional<std::string> program_on_path(const std::string& name) {
 struct scratch_folder {
   std::string path;
   scratch_folder() {
-    std::error_code ignored;
-    std::string form = (fs::temp_directory_path(ignored) / "rosin-figures-XXXXXX").string();
-    if (::mkdtemp(form.data()) != nullptr) path = form;
+    std::error_code error;
+    std::string form = (fs::temp_directory_path(error) / "rosin-figures-XXXXXX").string();
+    if (!error && ::mkdtemp(form.data()) != nullptr) path = form;
   }
   scratch_folder(const scratch_folder&) = delete;
   scratch_folder& operator=(const scratch_folder&) = delete;
@@ -54,10 +54,17 @@ struct scratch_folder {
 };
 
 /// In single quotes, where nothing has a meaning: in double ones a backquote begins a command of the shell.
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   std::string out = "'";
   for (const char c : rosin::one_line(text)) out += c == '\'' ? std::string{"''"} : std::string{c};
   return out + "'";
+}
+
+/// The name of a tick is a form as printf's.
+std::string tick_name(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '%' ? std::string{"%%"} : std::string{c};
+  return in_quotes(out);
 }
 
 void write_data(std::ostream& out, const std::string& name, const curve& c) {
@@ -99,21 +106,21 @@ void write_panel(std::ostream& out, const panel& p, const std::string& name, dou
   for (const auto& [from, to] : p.heavy)
     out << "set arrow from first " << from << ", graph 0.955 to first " << to << ", graph 0.955 nohead lw 5 lc rgb '"
         << colour::slip << "'\n";
-  out << "set label 1 " << quoted(p.title) << " at screen " << 82.0 / width << ", screen " << top + 14 / height
+  out << "set label 1 " << in_quotes(p.title) << " at screen " << 82.0 / width << ", screen " << top + 14 / height
       << " left noenhanced\nset key at screen " << 1 - 18.0 / width << ", screen " << top + 22 / height << "\nset xlabel "
-      << quoted(p.x_label) << " noenhanced\nset label 2 " << quoted(p.y_label) << " at screen " << 14.0 / width << ", screen "
-      << (bottom + top) / 2 << " center rotate noenhanced\n"
+      << in_quotes(p.x_label) << " noenhanced\nset label 2 " << in_quotes(p.y_label) << " at screen " << 14.0 / width
+      << ", screen " << (bottom + top) / 2 << " center rotate noenhanced\n"
       << "set lmargin at screen " << 82.0 / width << "\nset rmargin at screen " << 1 - (p.cells.empty() ? 18.0 : 70.0) / width
       << "\nset bmargin at screen " << bottom << "\nset tmargin at screen " << top << "\nset ytics autofreq\n";
   for (std::size_t i = 0; i < p.y_marks.size(); ++i)
-    out << (i == 0 ? "set ytics (" : "set ytics add (") << quoted(p.y_marks[i].second) << ' ' << p.y_marks[i].first << ")\n";
+    out << (i == 0 ? "set ytics (" : "set ytics add (") << tick_name(p.y_marks[i].second) << ' ' << p.y_marks[i].first << ")\n";
   if (!p.cells.empty()) return plot_cells(out, p, name, bottom, top, width);
   out << "plot ";
   for (std::size_t c = 0; c < p.curves.size(); ++c) {
     const curve& k = p.curves[c];
     out << (c > 0 ? ", " : "") << "$" << name << "_" << c << " using 1:2 with lines lw " << k.width << " dt " << k.dash
         << " lc rgb '" << k.colour << "' "
-        << (k.name.empty() ? std::string{"notitle"} : "title " + quoted(k.name) + " noenhanced");
+        << (k.name.empty() ? std::string{"notitle"} : "title " + in_quotes(k.name) + " noenhanced");
   }
   out << "\n";
 }
