@@ -39,17 +39,18 @@ rosin::outcome<frame_output> open_output(const std::string& path, bool force, do
                                          const std::vector<std::string>& names) {
   if (path == "-")
     return output_of(rosin::csv_sink{rosin::byte_link{::dup(STDOUT_FILENO), "standard output"}, rate_Hz, names, stop_flag()});
+  const std::string place = rosin::detail::followed(path).string();  // a link stays
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(path, ignored)) {
+  if (std::filesystem::is_regular_file(place, ignored)) {
     if (!force) return rosin::failure{path + ": exists already; --force overwrites it"};
-    std::filesystem::remove(path, ignored);
+    std::filesystem::remove(place, ignored);
   }
   if (path.ends_with(".wav")) {
-    auto file = rosin::take_file<>::create(path, {rate_Hz, static_cast<int>(names.size()), 32, true});
+    auto file = rosin::take_file<>::create(place, {rate_Hz, static_cast<int>(names.size()), 32, true});
     if (!file) return rosin::failure{file.error()};
     return output_of(*std::move(file));
   }
-  auto file = rosin::csv_sink::create(path, rate_Hz, names);
+  auto file = rosin::csv_sink::create(place, rate_Hz, names);
   if (!file) return rosin::failure{file.error()};
   return output_of(*std::move(file));
 }

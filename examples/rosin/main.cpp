@@ -100,10 +100,9 @@ tool::exit_code run(int argc, char** argv) {
   for (CLI::App* command : app.get_subcommands({})) know_standard_output(*command);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ExtrasError&) {
-    return tell_unexpected(app);
   } catch (const CLI::ParseError& error) {
-    if (app.get_subcommands().empty() && !app.remaining().empty()) return tell_unexpected(app);
+    const bool asked = error.get_exit_code() == 0;  // for help or the version
+    if (!app.remaining(true).empty() && (!asked || app.get_subcommands().empty())) return tell_unexpected(app);
     return app.exit(error) == 0 ? tool::exit_code::ok : tool::exit_code::bad_input;
   }
   return result;
