@@ -90,7 +90,9 @@ void write_body(std::ostream& out, const report_page& page, const std::vector<st
 exit_code write_page(const std::string& path, bool force, report_page page, const provenance& from) {
   const auto svg = draw(page.figures);
   if (!svg) {
-    page.warnings.push_back(rosin::one_line("the figures are missing: " + svg.error()));
+    std::string why = rosin::one_line("the figures are missing: " + svg.error());
+    why.erase(why.find_last_not_of(' ') + 1);
+    page.warnings.push_back(std::move(why));
     std::cerr << "rosin: warning: " << page.warnings.back() << '\n';
   }
   const auto why = rosin::write_file(path, force ? rosin::overwrite::allow : rosin::overwrite::refuse, [&](std::ostream& out) {
