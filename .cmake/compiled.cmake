@@ -1,6 +1,6 @@
 # rosin::compiled: the same headers, with what is only ever used in double compiled once, in a library (core/instantiate.hpp).
 # Whoever links it has ROSIN_COMPILED defined. Nobody who links rosin::rosin notices it.
-file(GLOB compiled_parts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/rosin/compiled/*.ipp)
+rosin_glob(compiled_parts include/rosin/compiled/*.ipp)
 set(compiled_sources "")
 foreach(part IN LISTS compiled_parts)
   cmake_path(GET part STEM name)

@@ -140,6 +140,7 @@ add_library(rosin_fft_choice INTERFACE)
 target_compile_definitions(rosin_fft_choice INTERFACE ROSIN_FFT_${rosin_fft_macro}=1)
 
 # The adapters whose packages are here have to compile alone, like every other header.
+list(TRANSFORM adapters PREPEND "${PROJECT_SOURCE_DIR}/")
 rosin_keep_buildable(adapters)
 add_library(rosin_adapters INTERFACE)
 target_sources(rosin_adapters INTERFACE FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${adapters})

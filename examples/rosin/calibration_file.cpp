@@ -209,9 +209,9 @@ json to_json(const rig_calibration& c, const provenance& from) {
 }
 
 rosin::outcome<calibration_set> read_calibration(const std::string& path) {
-  std::ifstream in{path, std::ios::binary};
-  const json document = json::parse(in, nullptr, false);
-  if (!in && document.is_discarded()) return rosin::failure{path + ": cannot be read"};
+  const auto text = rosin::read_file(path);
+  if (!text) return rosin::failure{text.error()};
+  const json document = json::parse(*text, nullptr, false);
   if (document.is_discarded()) return rosin::failure{path + ": is not JSON"};
   try {
     const json none;
@@ -264,13 +264,6 @@ rosin::outcome<calibration_set> read_calibration(const std::string& path) {
   } catch (const json::exception& error) {
     return rosin::failure{path + ": " + error.what() + ": a number that is needed is not there"};
   }
-}
-
-std::optional<rosin::failure> may_write_file(const std::string& path, bool force) {
-  if (path == "-") return std::nullopt;
-  auto why = rosin::cannot_write(path, force ? rosin::overwrite::allow : rosin::overwrite::refuse);
-  if (why && !force && std::filesystem::exists(path)) why->message += "; --force overwrites it";
-  return why ? why : being_written(path);
 }
 
 std::optional<rosin::failure> save_json(const std::string& path, const json& document, bool force) {

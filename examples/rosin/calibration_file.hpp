@@ -35,6 +35,5 @@ struct calibration_row {
 
 /// An object into a file, or to standard output where the path is "-".
 [[nodiscard]] std::optional<rosin::failure> save_json(const std::string& path, const json& document, bool force);
-[[nodiscard]] std::optional<rosin::failure> may_write_file(const std::string& path, bool force);
 
 }  // namespace tool

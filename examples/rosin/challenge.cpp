@@ -198,11 +198,11 @@ void add_challenge(CLI::App& app, exit_code& result) {
   command->add_option("--out", given->out, "Folder: rigs/, truth/, diagnoses/ and the page challenge.md; what is there is used")
       ->required()
       ->type_name("FOLDER");
-  command->add_option("--seed", given->seed, "Of the first rig")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command->add_option("--seed", given->seed, "Of the first rig")->check(not_negative())->capture_default_str();
   command->add_option("--count", given->count, "Rigs to make; 0: only what the folder holds")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
-  command->add_option("--effects", given->effects, "Hidden in each rig")->check(CLI::Range(0, 2))->capture_default_str();
+  command->add_option("--effects", given->effects, "Hidden in each rig")->check(between(0, 2, "INT"))->capture_default_str();
   command
       ->add_option("--effect", given->hidden,
                    "This one and no other, or, given twice, these two; besides those that are drawn: " +
@@ -210,14 +210,14 @@ void add_challenge(CLI::App& app, exit_code& result) {
       ->type_name("NAME")
       ->allow_extra_args(false);
   command->add_option("--strength", given->strength, "1: as in a laboratory in which one thing went wrong")
-      ->check(CLI::Range(0.001, 10.0))
+      ->check(between(0.001, 10.0))
       ->capture_default_str();
   command->add_option("--noise-db", given->noise_dB, "Peak of the first pluck over the noise; 0: drawn, 0.3 to 0.5 mN")
-      ->check(CLI::Range(0.0, 120.0))
+      ->check(between(0.0, 120.0))
       ->capture_default_str();
   command->add_option("--pitch", given->pitch_Hz, "Strings between these; without it 280 to 870")
       ->expected(2)
-      ->check(CLI::Range(20.0, 5000.0))
+      ->check(between(20.0, 5000.0))
       ->type_name("HZ HZ");
   command->add_option("--shard", given->shard, "The K-th of N parts: every N-th rig")->type_name("K/N")->capture_default_str();
   command->add_flag("--leave-out", given->leave_out,

@@ -4,6 +4,7 @@
 #include "rig_leftovers.hpp"
 
 #include <rosin/adapt/mat_matio.hpp>
+#include <rosin/core/number_text.hpp>
 #include <rosin/report/csv.hpp>
 #include <rosin/report/npy.hpp>
 
@@ -25,6 +26,36 @@ exit_code fail(const std::string& message, bool as_json) {
 
 void print(const json& document) { std::cout << document.dump(2, ' ', false, json::error_handler_t::replace) << '\n'; }
 
+namespace {
+
+/// Finite, and whatever `holds` asks for.
+template <class Holds>
+CLI::Validator number_that(Holds holds, const std::string& wanted, const std::string& description) {
+  return {[=](const std::string& text) {
+            const auto value = rosin::number_from(text);
+            if (!value || !std::isfinite(*value)) {
+              const bool comma = text.find(',') != std::string::npos;
+              return text + " is no finite number" + (comma ? "; the decimal mark is a point" : "");
+            }
+            return holds(*value) ? std::string{} : "must be " + wanted + ", is " + text;
+          },
+          description};
+}
+
+}  // namespace
+
+CLI::Validator positive() {
+  return number_that([](double x) { return x > 0; }, "larger than 0", "POSITIVE");
+}
+CLI::Validator not_negative() {
+  return number_that([](double x) { return x >= 0; }, "0 or larger", "NONNEGATIVE");
+}
+CLI::Validator between(double low, double high, const char* type) {
+  const std::string ends = rosin::number_text(low) + " to " + rosin::number_text(high);
+  return number_that([=](double x) { return x >= low && x <= high; }, ends,
+                     type + (" in [" + rosin::number_text(low) + " - " + rosin::number_text(high) + "]"));
+}
+
 void add_json_option(CLI::App& command, bool& as_json) {
   command.add_flag("--json", as_json, "Print the result as JSON, for a program to read");
 }
@@ -39,10 +70,15 @@ void add_table_options(CLI::App& command, table_output& output) {
   add_force_option(command, output.force);
 }
 
-std::optional<rosin::failure> may_write(const table_output& output) {
-  auto why = rosin::cannot_write(output.path, output.existing());
-  if (why && !output.force && std::filesystem::exists(output.path)) why->message += "; --force overwrites it";
-  return why ? why : being_written(output.path);
+std::optional<rosin::failure> may_write(const table_output& output) { return may_write_file(output.path, output.force); }
+
+std::optional<rosin::failure> may_write_file(const std::string& path, bool force, bool dash) {
+  if (path == "-" && dash) return std::nullopt;
+  if (path == "-") return rosin::failure{"-: standard output; this goes to a file only"};
+  if (const auto why = rosin::cannot_write(path, rosin::overwrite::allow)) return why;
+  if (!force && rosin::cannot_write(path, rosin::overwrite::refuse))
+    return rosin::failure{path + ": exists already; --force overwrites it"};
+  return being_written(path);
 }
 
 std::optional<rosin::failure> save(const table_output& output, const rosin::table& data) {

@@ -125,15 +125,15 @@ void add_compare(CLI::App& app, exit_code& result) {
   command
       ->add_option("--pass", given->pass_Hz,
                    "Both are low-passed: end of the pass band; left out: 20000, at most 0.3 of the rate")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->type_name("HZ");
   command
       ->add_option("--stop", given->stop_Hz,
                    "Nothing is left from here on; left out: 1.5 times the pass band, at most half-way to half the rate")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->type_name("HZ");
   command->add_option("--at-most", given->at_most, "Exit with 1 if force or velocity differs by more, after the common scale")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->type_name("DELTA");
   add_json_option(*command, given->json);
   command->footer(

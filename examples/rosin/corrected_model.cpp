@@ -72,8 +72,9 @@ void loosen(const json& calibration, plucks_to_diagnose& plucks) {
 
 rosin::outcome<corrected_model> read_model(const std::string& path, const rosin::rig& rig, provenance& from) {
   if (const auto why = from.add_input(path)) return *why;
-  std::ifstream in{path};
-  const json document = json::parse(in, nullptr, false);
+  const auto text = rosin::read_file(path);
+  if (!text) return rosin::failure{text.error()};
+  const json document = json::parse(*text, nullptr, false);
   const auto wrong = [&](const std::string& what) { return rosin::failure{path + ": " + what}; };
   if (!document.is_object() || !document.contains("missing") || !document.contains("calibration") ||
       !document["calibration"].is_object() || !document["missing"].is_array())

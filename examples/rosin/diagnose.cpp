@@ -83,20 +83,20 @@ exit_code run(const options& given, provenance from) {
   const bool as_json = given.json_file == "-";
   for (const auto* file : {&given.json_file, &given.report})
     if (!file->empty())
-      if (const auto why = may_write_file(*file, given.force)) return fail(why->message, as_json);
+      if (const auto why = may_write_file(*file, given.force, file == &given.json_file)) return fail(why->message, as_json);
   if (!given.report.empty())
     if (const auto why = cannot_draw()) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
   const auto found = diagnosis_of(folder->rig, from, given);
   if (!found) return fail(found.error(), as_json);
+  auto done = exit_code::ok;
   if (!given.json_file.empty())
-    if (const auto why = save_json(given.json_file, to_json(*found, from), given.force)) return fail(why->message);
-  if (!given.report.empty())
-    if (const auto why = write_diagnosis_report(given.report, given.force, *found, from)) return fail(why->message, as_json);
+    if (const auto why = save_json(given.json_file, to_json(*found, from), given.force)) done = fail(why->message);
   for (const auto& line : found->warnings) std::cerr << "rosin: warning: " << line << '\n';
   if (!as_json) print_text(*found);
-  return exit_code::ok;
+  if (given.report.empty()) return done;
+  return worse(done, write_diagnosis_report(given.report, given.force, *found, from));
 }
 
 }  // namespace
@@ -116,18 +116,18 @@ void add_diagnose(CLI::App& app, exit_code& result) {
       ->check(CLI::IsMember(std::vector<std::string>(rosin::effect_names.begin(), rosin::effect_names.end())).description(""))
       ->type_name("EFFECT");
   command->add_option("--threads", given->threads, "0: all cores; the diagnosis is the same, only sooner")
-      ->check(CLI::Range(0, 1024).description(""))
+      ->check(between(0, 1024, "INT").description(""))
       ->capture_default_str();
   auto* isolability =
       command->add_flag("--isolability", given->isolability, "What the plucks of the rig file can tell apart, recorded or not")
           ->excludes("--report");
   command->add_option("--rate", given->rate_Hz, "With --isolability: sampling rate, Hz")
       ->needs(isolability)
-      ->check(CLI::Range(8000.0, 1e6))
+      ->check(between(8000.0, 1e6))
       ->capture_default_str();
   command->add_option("--noise", given->noise_N, "With --isolability: noise of a channel, rms, N")
       ->needs(isolability)
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   add_force_option(*command, given->force);
   command->footer(
@@ -135,7 +135,7 @@ void add_diagnose(CLI::App& app, exit_code& result) {
       "alone and together, and judged on takes that were not fitted. Then the strokes are reconstructed with what was found,\n"
       "and tension and contact examined. A rig without two force channels is judged by its partials. Verdicts: no-mismatch, "
       "explained, unexplained.\n"
-      "Exit status: 0 done, 2 nothing could be done.");
+      "Exit status: 0 done, 1 done but figures are missing, 2 nothing could be done, or a file not be written.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

@@ -373,8 +373,7 @@ void add_limits(const rig_diagnosis& d, report_page& page) {
 
 }  // namespace
 
-std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d,
-                                                     const provenance& from) {
+exit_code write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d, const provenance& from) {
   report_page page;
   page.title = d.title + ": diagnosis";
   page.summary = sentence(d);
@@ -386,7 +385,7 @@ std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bo
   add_ranking(d, page);
   add_limits(d, page);
   add_figures(d, page);
-  return write_page(path, force, page, from);
+  return write_page(path, force, std::move(page), from);
 }
 
 }  // namespace tool

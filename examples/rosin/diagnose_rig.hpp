@@ -152,8 +152,8 @@ inline constexpr std::size_t diagnosis_steps = 4;
 [[nodiscard]] residual_picture residuals_of(const rosin::odd_pluck& odd, const rosin::rattle& rattle);
 [[nodiscard]] json to_json(const rig_diagnosis& d, const provenance& from);
 /// A page: the sentence, what is left before and after, parameters, runners-up, what could not be done. Needs gnuplot.
-[[nodiscard]] std::optional<rosin::failure> write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d,
-                                                                   const provenance& from);
+[[nodiscard]] exit_code write_diagnosis_report(const std::string& path, bool force, const rig_diagnosis& d,
+                                               const provenance& from);
 [[nodiscard]] std::string sentence(const rig_diagnosis& d);
 /// What a kind of mismatch means.
 [[nodiscard]] std::string kind_in_words(const std::string& kind);

@@ -4,7 +4,7 @@
 //
 #pragma once
 
-#include <rosin/acquire/signal_checks.hpp>
+#include <rosin/core/number_text.hpp>
 
 #include <limits>
 #include <string>
@@ -15,6 +15,6 @@ namespace tool {
 inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A number as printf's form says it.
-inline std::string in_digits(double x, const char* form = "%.3g") { return rosin::detail::figure(x, form); }
+inline std::string in_digits(double x, const char* form = "%.3g") { return rosin::number_text(x, form); }
 
 }  // namespace tool

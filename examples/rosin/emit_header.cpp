@@ -166,11 +166,11 @@ void add_header_options(CLI::App& command, header_options& given) {
       ->type_name("both|near|far")
       ->group(group);
   add("--emit-position", given.position, "Declared position of the contact, where plucks were made at several", "FRACTION")
-      ->check(CLI::Range(0.0, 1.0));
-  add("--emit-rate", given.rate_Hz, "Sampling rate; that of the plucks if not given", "HZ")->check(CLI::PositiveNumber);
-  add("--emit-pass", given.pass_Hz, "End of the pass band; 0.30 of the rate", "HZ")->check(CLI::PositiveNumber);
-  add("--emit-stop", given.stop_Hz, "Nothing is left from here on; 0.45 of the rate", "HZ")->check(CLI::PositiveNumber);
-  add("--emit-error", given.error, "Largest error in the pass band; 0.001 if not given", "RATIO")->check(CLI::Range(1e-6, 0.1));
+      ->check(between(0.0, 1.0));
+  add("--emit-rate", given.rate_Hz, "Sampling rate; that of the plucks if not given", "HZ")->check(positive());
+  add("--emit-pass", given.pass_Hz, "End of the pass band; 0.30 of the rate", "HZ")->check(positive());
+  add("--emit-stop", given.stop_Hz, "Nothing is left from here on; 0.45 of the rate", "HZ")->check(positive());
+  add("--emit-error", given.error, "Largest error in the pass band; 0.001 if not given", "RATIO")->check(between(1e-6, 0.1));
   add("--emit-namespace", given.space, "Namespace of the constants; rig if not given", "NAME")
       ->check([](const std::string& name) {
         const bool good =

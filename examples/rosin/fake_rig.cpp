@@ -259,12 +259,14 @@ void add_fake_rig(CLI::App& app, exit_code& result) {
       ->type_name("PATH");
   command->add_option("--homing", given->homing_s, "The sled has a home switch, and needs so long to find it")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command->add_option("--loop", given->loop, "This take, again and again without a gap")->type_name("TAKE");
   command->add_option("--harm", given->harm, "Share of the packets that get lost, cut, corrupted or doubled")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(between(0.0, 1.0))
       ->capture_default_str();
-  command->add_option("--packet", given->packet_frames, "Frames in a packet")->check(CLI::Range(1, 500))->capture_default_str();
+  command->add_option("--packet", given->packet_frames, "Frames in a packet")
+      ->check(between(1, 500, "INT"))
+      ->capture_default_str();
   command->add_option("--seconds", given->seconds, "Ends after this time; at Ctrl-C if left out")->type_name("S");
   command->footer(
       "A line on standard input with the name of a take plays it: this is the hand that pulls the wire.\n"

@@ -78,14 +78,15 @@ exit_code outcome_of(bool incomplete, bool warnings, const fit_options& given) {
 /// Whatever the kind of calibration, where it goes.
 template <class Calibration, class Print>
 exit_code deliver(const Calibration& c, const fit_options& given, const provenance& from, Print print_it) {
-  if (!given.report.empty())
-    if (const auto why = write_fit_report(given.report, given.force, c, from)) return fail(why->message);
+  exit_code done = outcome_of(c.incomplete, !c.warnings.empty(), given);
   if (!given.json_file.empty())
-    if (const auto why = save_json(given.json_file, to_json(c, from), given.force)) return fail(why->message);
+    if (const auto why = save_json(given.json_file, to_json(c, from), given.force)) done = worse(done, fail(why->message));
   if (given.json_file == "-")
     for (const auto& line : c.warnings) std::cerr << "rosin: warning: " << line << '\n';
   else print_it(c);
-  return outcome_of(c.incomplete, !c.warnings.empty(), given);
+  if (!given.report.empty())
+    done = worse(done, write_fit_report(given.report, given.force, c, from));  // last: it may lack figures
+  return done;
 }
 
 /// From single channels; `instead` says why, where both ends have a force transducer and nobody asked for it.
@@ -109,7 +110,7 @@ exit_code run(const fit_options& given, provenance from) {
   const bool as_json = given.json_file == "-";
   for (const auto* file : {&given.json_file, &given.report, &given.header.path})
     if (!file->empty())
-      if (const auto why = may_write_file(*file, given.force)) return fail(why->message, as_json);
+      if (const auto why = may_write_file(*file, given.force, file == &given.json_file)) return fail(why->message, as_json);
   if (!given.report.empty())
     if (const auto why = cannot_draw()) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
@@ -121,12 +122,13 @@ exit_code run(const fit_options& given, provenance from) {
                        "no pluck holds its release: gains, polarity, order of the channels, place of the contact and the wire's "
                        "force cannot be known; pitch, stiffness and loss are from what rings in each channel");
   if (!fitted) return fail(fitted.error(), as_json);
+  exit_code done = deliver(*fitted, given, from, print_fit);
+  if (given.header.path.empty()) return done;
   std::vector<std::string> said;
-  if (!given.header.path.empty() && any_end_moves(folder->rig))
+  if (any_end_moves(folder->rig))
     said.emplace_back("header: the streaming reconstruction takes both ends for rigid; [terminations] is not in it");
-  if (!given.header.path.empty())
-    if (const auto why = write_header(given.header, given.force, set_of(*fitted), from, said)) return fail(why->message, as_json);
-  const exit_code done = deliver(*fitted, given, from, print_fit);
+  if (const auto why = write_header(given.header, given.force, set_of(*fitted), from, said))
+    done = worse(done, fail(why->message));
   for (const auto& line : said) (as_json ? std::cerr : std::cout) << line << '\n';
   return done;
 }
@@ -154,7 +156,9 @@ void add_fit(CLI::App& app, exit_code& result) {
       "one standard deviation, random and systematic apart. Plucks marked hold_out are predicted, not fitted.\n"
       "Without force transducers at both ends, or where no pluck holds its release: partials, inharmonicity, bending\n"
       "stiffness and loss from each channel.\n"
-      "Exit status: 0 done, 1 done but plucks had to be left out or the fit did not settle, 2 nothing could be fitted.");
+      "Exit status: 0 done, 1 done but plucks had to be left out, the fit did not settle or figures are missing, 2 nothing could "
+      "be\n"
+      "fitted, or a file not be written.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

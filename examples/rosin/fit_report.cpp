@@ -93,8 +93,7 @@ figure partials_figure(const pickup_result& r) {
 
 }  // namespace
 
-std::optional<rosin::failure> write_fit_report(const std::string& path, bool force, const rig_calibration& c,
-                                               const provenance& from) {
+exit_code write_fit_report(const std::string& path, bool force, const rig_calibration& c, const provenance& from) {
   report_page page;
   page.title = c.title + ": calibration";
   const double f0 = c.fit.value[rosin::pluck_layout::fundamental];
@@ -110,11 +109,10 @@ std::optional<rosin::failure> write_fit_report(const std::string& path, bool for
   for (std::size_t i = 0; i < c.predicted.size() && i < 2; ++i) page.figures.push_back(pluck_figure(c.predicted[i], f0, true));
   if (c.drawn.size() > 3)
     page.notes.push_back("The first three of " + std::to_string(c.drawn.size()) + " fitted plucks are drawn.");
-  return write_page(path, force, page, from);
+  return write_page(path, force, std::move(page), from);
 }
 
-std::optional<rosin::failure> write_fit_report(const std::string& path, bool force, const pickup_calibration& c,
-                                               const provenance& from) {
+exit_code write_fit_report(const std::string& path, bool force, const pickup_calibration& c, const provenance& from) {
   report_page page;
   page.title = c.title + ": pitch, stiffness and loss";
   page.summary = std::to_string(c.results.size()) + " recording" + (c.results.size() == 1 ? "" : "s") +
@@ -128,7 +126,7 @@ std::optional<rosin::failure> write_fit_report(const std::string& path, bool for
   }
   if (c.results.size() > page.figures.size())
     page.notes.push_back("The first " + std::to_string(page.figures.size()) + " are drawn.");
-  return write_page(path, force, page, from);
+  return write_page(path, force, std::move(page), from);
 }
 
 }  // namespace tool

@@ -12,9 +12,8 @@ namespace tool {
 /// A pluck at either end with the model, and what is left (the paper's Fig. 2).
 [[nodiscard]] figure pluck_figure(const pluck_prediction& pluck, double fundamental_Hz, bool held_out);
 
-[[nodiscard]] std::optional<rosin::failure> write_fit_report(const std::string& path, bool force, const rig_calibration& c,
-                                                             const provenance& from);
-[[nodiscard]] std::optional<rosin::failure> write_fit_report(const std::string& path, bool force, const pickup_calibration& c,
-                                                             const provenance& from);
+[[nodiscard]] exit_code write_fit_report(const std::string& path, bool force, const rig_calibration& c, const provenance& from);
+[[nodiscard]] exit_code write_fit_report(const std::string& path, bool force, const pickup_calibration& c,
+                                         const provenance& from);
 
 }  // namespace tool

@@ -11,12 +11,6 @@ namespace {
 
 using layout = rosin::pluck_layout;
 
-std::string printed(double x, int decimals) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, x);
-  return text.data();
-}
-
 struct table_of_rows {
   std::vector<calibration_row> rows;
   std::string group;
@@ -119,7 +113,7 @@ void take_rows(table_of_rows& t, const rig_calibration& c) {
 std::string rounded(double value, double sd) {
   if (!(sd > 0) || !std::isfinite(sd)) return in_digits(value, "%.6g");
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(sd))), 0, 12);
-  return printed(value, decimals);
+  return rosin::number_text(value, "%." + std::to_string(decimals) + "f");
 }
 
 std::vector<calibration_row> rows_of(const rig_calibration& c) {

@@ -83,10 +83,10 @@ void add_input_options(CLI::App& command, input_options& given) {
       ->type_name("SOURCE");
   command.add_option("--rate", given.rate_Hz, "Sampling rate, where the source does not tell it (alsa:, --bare)")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--channels", given.channels, "Number of channels, the same")
-      ->check(CLI::Range(1, 64))
+      ->check(between(1, 64, "INT"))
       ->capture_default_str();
   command.add_option("--bits", given.bits, "Bits of a sample, the same")
       ->check(CLI::IsMember({16, 24, 32}))
@@ -96,7 +96,7 @@ void add_input_options(CLI::App& command, input_options& given) {
   command.add_option("--baud", given.baud, "Speed of a serial line")->capture_default_str();
   command
       .add_option("--faster", given.faster, "A file plays in real time (1) or so many times as fast; 0: as fast as it is read")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
 }
 

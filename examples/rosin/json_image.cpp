@@ -34,6 +34,13 @@ json from_toml(const toml::node& node) {
   return date.str();
 }
 
+/// Beyond any array where it is too large.
+std::size_t index_from(const std::string& digits) {
+  std::size_t out = std::numeric_limits<std::size_t>::max();
+  std::from_chars(digits.data(), digits.data() + digits.size(), out);
+  return out;
+}
+
 /// The node that a JSON pointer leads to, or the last one on the way that exists.
 const toml::node* follow(const toml::node& root, const std::string& pointer) {
   const toml::node* at = &root;
@@ -43,7 +50,7 @@ const toml::node* follow(const toml::node& root, const std::string& pointer) {
     const toml::node* next = nullptr;
     if (const auto* table = at->as_table()) next = table->get(part);
     else if (const auto* array = at->as_array(); array != nullptr && part.find_first_not_of("0123456789") == std::string::npos)
-      next = array->get(std::stoul(part));
+      next = array->get(index_from(part));
     if (next == nullptr) break;
     at = next;
   }
@@ -121,15 +128,12 @@ std::string name_of(format what) {
 }
 
 rosin::outcome<json_image> read_json_image(const std::string& path) {
-  std::error_code ignored;
-  std::ifstream in{path, std::ios::binary};
-  std::ostringstream text;
-  if (!in || std::filesystem::is_directory(path, ignored) || !(text << in.rdbuf()))
-    return rosin::failure{path + ": cannot be read, or is empty"};
+  const auto text = rosin::read_file(path);
+  if (!text) return rosin::failure{text.error()};
   const auto extension = std::filesystem::path{path}.extension();
-  if (extension == ".toml") return rig_image(path, text.str());
-  if (extension == ".csv") return table_image(path, text.str());
-  if (extension == ".json") return plain_image(path, text.str());
+  if (extension == ".toml") return rig_image(path, *text);
+  if (extension == ".csv") return table_image(path, *text);
+  if (extension == ".json") return plain_image(path, *text);
   return rosin::failure{
       path + ": the name says no format; a rig ends in .toml, a reconstruction in .csv, a diagnosis or a calibration in .json"};
 }

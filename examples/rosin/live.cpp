@@ -114,7 +114,7 @@ exit_code run(const live_request& given) {
   const auto rig = rig_of(given, take, files);
   if (!rig) return fail(rig.error(), as_json);
   if (!given.json_file.empty())
-    if (const auto why = may_write_file(given.json_file, given.live.force)) return fail(why->message, as_json);
+    if (const auto why = may_write_file(given.json_file, given.live.force, true)) return fail(why->message, as_json);
   auto input = open_input(given.input);
   if (!input) return fail(input.error(), as_json);
   recorder from{*std::move(input), given.how};  // from here on it is listened to, whatever else takes its time

@@ -40,18 +40,19 @@ rosin::outcome<frame_output> open_output(const std::string& path, bool force, do
                                          const std::vector<std::string>& names) {
   if (path == "-")
     return output_of(rosin::csv_sink{rosin::byte_link{::dup(STDOUT_FILENO), "standard output"}, rate_Hz, names, stop_flag()});
+  const std::string place = rosin::detail::followed(path).string();  // a link stays
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(path, ignored)) {
+  if (std::filesystem::is_regular_file(place, ignored)) {
     if (!force) return rosin::failure{path + ": exists already; --force overwrites it"};
-    if (const auto why = being_written(path)) return *why;
-    std::filesystem::remove(path, ignored);
+    if (const auto why = being_written(place)) return *why;
+    std::filesystem::remove(place, ignored);
   }
   if (path.ends_with(".wav")) {
-    auto file = rosin::take_file<>::create(path, {rate_Hz, static_cast<int>(names.size()), 32, true});
+    auto file = rosin::take_file<>::create(place, {rate_Hz, static_cast<int>(names.size()), 32, true});
     if (!file) return rosin::failure{file.error()};
     return output_of(*std::move(file));
   }
-  auto file = rosin::csv_sink::create(path, rate_Hz, names);
+  auto file = rosin::csv_sink::create(place, rate_Hz, names);
   if (!file) return rosin::failure{file.error()};
   return output_of(*std::move(file));
 }
@@ -215,12 +216,12 @@ std::string live_chain::summary() const {
 void add_live_options(CLI::App& command, live_options& given) {
   command.add_option("--pass", given.pass_Hz, "End of the pass band; 0.30 of the sampling rate if not given")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_option("--stop", given.stop_Hz, "Nothing is left from here on; 0.45 of the sampling rate")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_option("--error", given.error, "Of the filters, relative; a larger one makes the result come earlier")
-      ->check(CLI::Range(1e-6, 0.1))
+      ->check(between(1e-6, 0.1))
       ->capture_default_str();
   command
       .add_option("--out", given.out,

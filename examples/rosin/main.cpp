@@ -23,9 +23,9 @@
 //
 #include "commands.hpp"
 
+#include <rosin/adapt/problem_log.hpp>
 #include <rosin/version.hpp>
 
-#include <cmath>
 #include <exception>
 #include <iostream>
 
@@ -44,19 +44,38 @@ void keep_freed_memory() {
 #endif
 }
 
-/// "nan" is a number that no comparison refuses: neither is it too large nor too small for a range.
-void ask_for_finite_numbers(CLI::App& command) {
-  const CLI::Validator finite{[](const std::string& text) {
-                                double value = 0;
-                                const bool number = CLI::detail::lexical_cast(text, value);
-                                return number && !std::isfinite(value) ? text + " is no finite number" : std::string{};
-                              },
-                              ""};
+/// /dev/stdout and its other names are "-" to whatever takes the name of a file.
+void know_standard_output(CLI::App& command) {
   for (CLI::Option* option : command.get_options({}))
-    if (const auto& takes = option->get_type_name(); takes.find("POSITIVE") != std::string::npos ||
-                                                     takes.find("NONNEGATIVE") != std::string::npos ||
-                                                     takes.find(" in [") != std::string::npos)
-      option->check(finite);
+    if (option->get_type_name().find("FILE") != std::string::npos && !option->get_positional())
+      option->transform([](const std::string& path) { return rosin::is_standard_output(path) ? std::string{"-"} : path; });
+}
+
+/// "; did you mean --json?": a command or an option of the one that was given, whose name is near.
+std::string meant(const CLI::App& app, const std::string& unknown) {
+  const auto chosen = app.get_subcommands();
+  std::vector<std::string> known;
+  if (chosen.empty())
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+      known.push_back(command->get_name());
+  else if (unknown.starts_with("--"))
+    for (const CLI::Option* option : chosen.front()->get_options())
+      for (const auto& name : option->get_lnames()) known.push_back("--" + name);
+  return rosin::suggestion(unknown.substr(0, unknown.find('=')), known);
+}
+
+/// What nobody asked for, one thing a line.
+tool::exit_code tell_unexpected(const CLI::App& app) {
+  std::string text;
+  for (const auto& unknown : app.remaining(true)) {
+    const bool command = app.get_subcommands().empty() && !unknown.starts_with('-');
+    const std::string what = command                    ? "there is no command "
+                             : unknown.starts_with('-') ? "there is no option "
+                                                        : "not expected: ";
+    text += (text.empty() ? "" : "\n") + what + unknown + meant(app, unknown);
+    if (command) break;  // what follows is that command's
+  }
+  return tool::fail(text);
 }
 
 tool::exit_code run(int argc, char** argv) {
@@ -79,10 +98,12 @@ tool::exit_code run(int argc, char** argv) {
   tool::add_compare(app, result);
   tool::add_challenge(app, result);
   tool::add_validate(app, result);
-  for (CLI::App* command : app.get_subcommands({})) ask_for_finite_numbers(*command);
+  for (CLI::App* command : app.get_subcommands({})) know_standard_output(*command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const bool asked = error.get_exit_code() == 0;  // for help or the version
+    if (!app.remaining(true).empty() && (!asked || app.get_subcommands().empty())) return tell_unexpected(app);
     return app.exit(error) == 0 ? tool::exit_code::ok : tool::exit_code::bad_input;
   }
   return result;

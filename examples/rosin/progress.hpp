@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <iostream>
 #include <string>
 #include <utility>
 
@@ -40,8 +41,7 @@ private:
     constexpr std::size_t width = 30;
     const std::size_t filled = steps_ > 0 ? width * (done_ < steps_ ? done_ : steps_) / steps_ : width;
     const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
-    std::fprintf(stderr, "\r\x1b[K%s [%s] %zu/%zu", what_.c_str(), bar.c_str(), done_, steps_);
-    std::fflush(stderr);
+    std::cerr << "\r\x1b[K" + what_ + " [" + bar + "] " + std::to_string(done_) + "/" + std::to_string(steps_) << std::flush;
   }
 
   std::string what_;

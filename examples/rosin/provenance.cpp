@@ -31,10 +31,12 @@ std::string hexadecimal(const unsigned char* bytes, std::size_t count) {
 }  // namespace
 
 rosin::outcome<input_file> fingerprint(const std::string& path) {
+  errno = 0;
   std::ifstream in{path, std::ios::binary};
+  if (!in) return rosin::failure{path + ": cannot be read" + rosin::detail::system_reason()};
   const std::unique_ptr<EVP_MD_CTX, free_digest> digest{EVP_MD_CTX_new()};
-  if (!in || !digest || EVP_DigestInit_ex(digest.get(), EVP_sha256(), nullptr) != 1)
-    return rosin::failure{path + ": cannot be read"};
+  if (!digest || EVP_DigestInit_ex(digest.get(), EVP_sha256(), nullptr) != 1)
+    return rosin::failure{path + ": no checksum can be had of it"};
   input_file out{path, "", 0};
   std::vector<char> block(1U << 16U);
   while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
@@ -42,7 +44,7 @@ rosin::outcome<input_file> fingerprint(const std::string& path) {
     EVP_DigestUpdate(digest.get(), block.data(), got);
     out.bytes += got;
   }
-  if (in.bad()) return rosin::failure{path + ": cannot be read"};
+  if (in.bad()) return rosin::failure{path + ": cannot be read" + rosin::detail::system_reason()};
   std::array<unsigned char, EVP_MAX_MD_SIZE> sum{};
   unsigned int size = 0;
   EVP_DigestFinal_ex(digest.get(), sum.data(), &size);

@@ -29,7 +29,7 @@ std::optional<rosin::failure> cannot_deliver(const reconstruct_options& given) {
     if (auto why = cannot_draw()) return why;
   for (const auto* file : {&given.report, &given.json_file, &given.slips})
     if (!file->empty())
-      if (auto why = may_write_file(*file, given.output.force)) return why;
+      if (auto why = may_write_file(*file, given.output.force, file == &given.json_file)) return why;
   if (given.output.path.empty()) return std::nullopt;
   if (given.output.path != "-") return may_write(given.output);
   if (given.output.format != "csv") return rosin::failure{"--out -: only csv goes to standard output"};
@@ -70,20 +70,6 @@ rosin::outcome<calibration_set> calibration_of(const reconstruct_options& given,
   return set_of(*fitted);
 }
 
-std::optional<rosin::failure> deliver(const reconstruct_options& given, const take_reconstruction& r,
-                                      const std::optional<rig_calibration>& fitted, const provenance& from) {
-  if (given.output.path == "-") rosin::write_csv(std::cout, table_of(r, from));
-  else if (!given.output.path.empty())
-    if (auto why = save(given.output, table_of(r, from))) return why;
-  if (!given.slips.empty())
-    if (auto why = save({given.slips, "csv", given.output.force}, table_of(slips_of(r), r, from))) return why;
-  if (!given.report.empty())
-    if (auto why = write_reconstruction_report(given.report, given.output.force, r, fitted, from)) return why;
-  if (!given.json_file.empty())
-    if (auto why = save_json(given.json_file, to_json(r, from), given.output.force)) return why;
-  return std::nullopt;
-}
-
 std::string said_of(const corrected_model& m) {
   const auto list = [](const std::vector<std::string>& names) {
     std::string out;
@@ -98,6 +84,23 @@ void print_text(std::ostream& out, const take_reconstruction& r) {
   out << r.title << ", " << summary_of(r) << '\n';
   for (const auto& [what, value] : facts_of(r)) out << "  " << what << ": " << value << '\n';
   for (const auto& line : r.assumed) out << "assumed: " << line << '\n';
+}
+
+/// Every output that can be written is, the text after them, the page last: it may lack figures.
+exit_code deliver(const reconstruct_options& given, const take_reconstruction& r, const std::optional<rig_calibration>& fitted,
+                  const provenance& from) {
+  auto done = exit_code::ok;
+  const auto put = [&](const std::optional<rosin::failure>& why) {
+    if (why) done = worse(done, fail(why->message));
+  };
+  if (given.output.path == "-") rosin::write_csv(std::cout, table_of(r, from));
+  else if (!given.output.path.empty()) put(save(given.output, table_of(r, from)));
+  if (!given.slips.empty()) put(save({given.slips, "csv", given.output.force}, table_of(slips_of(r), r, from)));
+  if (!given.json_file.empty()) put(save_json(given.json_file, to_json(r, from), given.output.force));
+  for (const auto& line : r.warnings) std::cerr << "rosin: warning: " << line << '\n';
+  if (given.json_file != "-") print_text(given.output.path == "-" ? std::cerr : std::cout, r);
+  if (given.report.empty()) return done;
+  return worse(done, write_reconstruction_report(given.report, given.output.force, r, fitted, from));
 }
 
 exit_code run(const reconstruct_options& given, provenance from) {
@@ -123,18 +126,15 @@ exit_code run(const reconstruct_options& given, provenance from) {
   if (!made) return fail(made.error(), as_json);
   std::vector<std::string> warnings = folder->notes, assumed = fitted ? fitted->assumed : rosin::values_of(rig).assumed;
   for (const auto& f : read->check.findings)
-    if (f.level != rosin::severity::note) warnings.push_back(sentence(rig, f));
+    if (f.level != rosin::severity::note) warnings.push_back(warning_of(rig, f));
   if (how.model && !how.model->doubt.empty()) warnings.push_back(how.model->file + ": " + how.model->doubt);
   if (fitted)
     for (const auto& line : fitted->warnings) warnings.push_back((how.model ? "with the declared model: " : "") + line);
   made->warnings.insert(made->warnings.begin(), warnings.begin(), warnings.end());
   made->assumed.insert(made->assumed.begin(), assumed.begin(), assumed.end());
   if (how.model) made->assumed.push_back(said_of(*how.model));
-  if (const auto why = deliver(given, *made, fitted, from)) return fail(why->message, as_json);
-  for (const auto& line : made->warnings) std::cerr << "rosin: warning: " << line << '\n';
-  if (!as_json) print_text(given.output.path == "-" ? std::cerr : std::cout, *made);
   const bool found = (fitted && fitted->incomplete) || (given.strict && !made->warnings.empty());
-  return found ? exit_code::finding : exit_code::ok;
+  return worse(found ? exit_code::finding : exit_code::ok, deliver(given, *made, fitted, from));
 }
 
 }  // namespace
@@ -150,12 +150,12 @@ void add_reconstruct(CLI::App& app, exit_code& result) {
       ->add_option("--pass", given->how.pass_Hz,
                    "End of the pass band; 0.30 of the sampling rate, or two thirds of --stop, if not given")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command
       ->add_option("--stop", given->how.stop_Hz,
                    "Nothing is left from here on; 0.45 of the sampling rate, or 1.5 times --pass, if not given")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command->add_flag("--no-fine-tune", given->no_fine_tune, "Leave delays and gains as the plucks gave them");
   command->add_flag("--paper", given->how.paper, "The processing of Woodhouse, Schumacher & Garoff (2000), for comparison");
   command->add_flag("--frequency-domain", given->how.frequency_domain,
@@ -181,7 +181,9 @@ void add_reconstruct(CLI::App& app, exit_code& result) {
       "Calibrates from the plucks of the rig, tunes delays and relative gain to the take within what the plucks allow,\n"
       "and reconstructs the whole take, transient included. What cannot be known (the first and last transit times) is\n"
       "left empty. Standard deviations are random; those of the common scale stand in columns of their own.\n"
-      "Exit status: 0 done, 1 done but plucks had to be left out or the fit did not settle, 2 nothing could be done.");
+      "Exit status: 0 done, 1 done but plucks had to be left out, the fit did not settle or figures are missing, 2 nothing could "
+      "be\n"
+      "done, or a file not be written.");
   command->callback([given, command, &result] {
     given->how.fine_tune = !given->no_fine_tune;
     result = run(*given, provenance{*command});

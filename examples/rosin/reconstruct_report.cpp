@@ -202,8 +202,8 @@ std::optional<figure> magnet_figure(const take_reconstruction& r, const window& 
 
 }  // namespace
 
-std::optional<rosin::failure> write_reconstruction_report(const std::string& path, bool force, const take_reconstruction& r,
-                                                          const std::optional<rig_calibration>& fitted, const provenance& from) {
+exit_code write_reconstruction_report(const std::string& path, bool force, const take_reconstruction& r,
+                                      const std::optional<rig_calibration>& fitted, const provenance& from) {
   report_page page;
   page.title = r.title + ": " + r.take;
   page.summary = summary_of(r);
@@ -222,7 +222,7 @@ std::optional<rosin::failure> write_reconstruction_report(const std::string& pat
     page.notes.push_back("The calibration was read from " + r.calibration.from +
                          ": its plucks and table stand in that fit's own report.");
   }
-  return write_page(path, force, page, from);
+  return write_page(path, force, std::move(page), from);
 }
 
 }  // namespace tool

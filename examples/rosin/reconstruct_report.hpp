@@ -10,9 +10,7 @@
 namespace tool {
 
 /// `fitted`: the calibration with its plucks, where it was made in the same run.
-[[nodiscard]] std::optional<rosin::failure> write_reconstruction_report(const std::string& path, bool force,
-                                                                        const take_reconstruction& r,
-                                                                        const std::optional<rig_calibration>& fitted,
-                                                                        const provenance& from);
+[[nodiscard]] exit_code write_reconstruction_report(const std::string& path, bool force, const take_reconstruction& r,
+                                                    const std::optional<rig_calibration>& fitted, const provenance& from);
 
 }  // namespace tool

@@ -89,8 +89,29 @@ exit_code tell(const options& given, const rig_file_writer& files, const recorde
   return sound && !why && !reports.empty() ? exit_code::ok : exit_code::finding;
 }
 
+/// A folder that was made for a take which then is refused goes again, with those above it that were made for it: all that is empty.
+class new_folder {
+public:
+  explicit new_folder(const std::string& path) {
+    std::error_code ignored;
+    for (std::filesystem::path p = path; !p.empty() && !std::filesystem::exists(p, ignored); p = p.parent_path())
+      made_.push_back(p);
+  }
+  new_folder(const new_folder&) = delete;
+  new_folder& operator=(const new_folder&) = delete;
+  ~new_folder() {
+    std::error_code error;
+    for (const auto& p : made_)
+      if (std::filesystem::remove(p, error); error) break;
+  }
+
+private:
+  std::vector<std::filesystem::path> made_;  ///< the innermost first
+};
+
 exit_code run(const options& given) {
   stop_on_signals();
+  const new_folder gone_if_unused{given.rig};
   auto files = rig_file_writer::open(given.rig, given.like);
   if (!files) return fail(files.error(), given.json);
   if (given.count > 1 && !given.take.name.empty()) return fail("--count: --take names one take only", given.json);
@@ -129,7 +150,7 @@ void add_record(CLI::App& app, exit_code& result) {
   add_recorder_options(*command, given->how);
   add_sled_options(*command, given->stroke);
   command->add_option("--count", given->count, "So many takes, one after the other")
-      ->check(CLI::Range(1, 1000))
+      ->check(between(1, 1000, "INT"))
       ->capture_default_str();
   add_json_option(*command, given->json);
   command->footer(

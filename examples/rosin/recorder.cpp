@@ -258,15 +258,15 @@ take_report recorder::record(const take_plan& take, rig_file_writer* files, cons
 void add_recorder_options(CLI::App& command, recorder_options& given) {
   command.add_option("--seconds", given.seconds, "Length of the take; until Ctrl-C or the source's end if left out")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command
       .add_option("--trigger", given.trigger.threshold,
                   "The take begins when a channel departs from its mean by so much of full scale; 0: at once")
-      ->check(CLI::Range(0.0, 2.0))
+      ->check(between(0.0, 2.0))
       ->capture_default_str();
   command.add_option("--before", given.trigger.before_s, "What is kept of the time before the trigger")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(between(0.0, 60.0))
       ->capture_default_str();
 }
 

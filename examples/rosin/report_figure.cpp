@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "report_figure.hpp"
 
+#include <rosin/report/output_file.hpp>
+#include <rosin/report/table.hpp>
+
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -12,6 +15,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <locale>
 #include <sstream>
 
 extern char** environ;  // NOLINT: POSIX
@@ -37,9 +41,9 @@ std::optional<std::string> program_on_path(const std::string& name) {
 struct scratch_folder {
   std::string path;
   scratch_folder() {
-    std::error_code ignored;
-    std::string form = (fs::temp_directory_path(ignored) / "rosin-figures-XXXXXX").string();
-    if (::mkdtemp(form.data()) != nullptr) path = form;
+    std::error_code error;
+    std::string form = (fs::temp_directory_path(error) / "rosin-figures-XXXXXX").string();
+    if (!error && ::mkdtemp(form.data()) != nullptr) path = form;
   }
   scratch_folder(const scratch_folder&) = delete;
   scratch_folder& operator=(const scratch_folder&) = delete;
@@ -49,10 +53,18 @@ struct scratch_folder {
   }
 };
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c == '\n' ? ' ' : c};
-  return out + "\"";
+/// In single quotes, where nothing has a meaning: in double ones a backquote begins a command of the shell.
+std::string in_quotes(const std::string& text) {
+  std::string out = "'";
+  for (const char c : rosin::one_line(text)) out += c == '\'' ? std::string{"''"} : std::string{c};
+  return out + "'";
+}
+
+/// The name of a tick is a form as printf's.
+std::string tick_name(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '%' ? std::string{"%%"} : std::string{c};
+  return in_quotes(out);
 }
 
 void write_data(std::ostream& out, const std::string& name, const curve& c) {
@@ -94,32 +106,31 @@ void write_panel(std::ostream& out, const panel& p, const std::string& name, dou
   for (const auto& [from, to] : p.heavy)
     out << "set arrow from first " << from << ", graph 0.955 to first " << to << ", graph 0.955 nohead lw 5 lc rgb '"
         << colour::slip << "'\n";
-  out << "set label 1 " << quoted(p.title) << " at screen " << 82.0 / width << ", screen " << top + 14 / height
+  out << "set label 1 " << in_quotes(p.title) << " at screen " << 82.0 / width << ", screen " << top + 14 / height
       << " left noenhanced\nset key at screen " << 1 - 18.0 / width << ", screen " << top + 22 / height << "\nset xlabel "
-      << quoted(p.x_label) << " noenhanced\nset label 2 " << quoted(p.y_label) << " at screen " << 14.0 / width << ", screen "
-      << (bottom + top) / 2 << " center rotate noenhanced\n"
+      << in_quotes(p.x_label) << " noenhanced\nset label 2 " << in_quotes(p.y_label) << " at screen " << 14.0 / width
+      << ", screen " << (bottom + top) / 2 << " center rotate noenhanced\n"
       << "set lmargin at screen " << 82.0 / width << "\nset rmargin at screen " << 1 - (p.cells.empty() ? 18.0 : 70.0) / width
       << "\nset bmargin at screen " << bottom << "\nset tmargin at screen " << top << "\nset ytics autofreq\n";
   for (std::size_t i = 0; i < p.y_marks.size(); ++i)
-    out << (i == 0 ? "set ytics (" : "set ytics add (") << quoted(p.y_marks[i].second) << ' ' << p.y_marks[i].first << ")\n";
+    out << (i == 0 ? "set ytics (" : "set ytics add (") << tick_name(p.y_marks[i].second) << ' ' << p.y_marks[i].first << ")\n";
   if (!p.cells.empty()) return plot_cells(out, p, name, bottom, top, width);
   out << "plot ";
   for (std::size_t c = 0; c < p.curves.size(); ++c) {
     const curve& k = p.curves[c];
     out << (c > 0 ? ", " : "") << "$" << name << "_" << c << " using 1:2 with lines lw " << k.width << " dt " << k.dash
         << " lc rgb '" << k.colour << "' "
-        << (k.name.empty() ? std::string{"notitle"} : "title " + quoted(k.name) + " noenhanced");
+        << (k.name.empty() ? std::string{"notitle"} : "title " + in_quotes(k.name) + " noenhanced");
   }
   out << "\n";
 }
 
-void write_figure(std::ostream& out, const figure& f, std::size_t number, const std::string& file) {
+void write_figure(std::ostream& out, const figure& f, std::size_t number) {
   constexpr double above = 34, numbers = 26, label = 56;  // around each panel: title; numbers; numbers with their label
   double height = 0;
   for (const auto& p : f.panels) height += p.height;
   out << "set terminal svg size " << f.width << "," << height
-      << " dynamic enhanced font 'sans-serif,13' background 'white' name 'figure" << number << "'\n"
-      << "set output '" << file << "'\nset multiplot\n";
+      << " dynamic enhanced font 'sans-serif,13' background 'white' name 'figure" << number << "'\nset multiplot\n";
   double from_top = 0;
   for (std::size_t i = 0; i < f.panels.size(); ++i) {
     const panel& p = f.panels[i];
@@ -128,18 +139,35 @@ void write_figure(std::ostream& out, const figure& f, std::size_t number, const 
                 1 - (from_top + p.height - below) / height, 1 - (from_top + above) / height, f.width, height);
     from_top += p.height;
   }
-  out << "unset multiplot\nunset output\n";
+  out << "unset multiplot\nset output\n";
 }
 
-bool run_gnuplot(const std::string& program, const std::string& script, const std::string& log) {
+/// Ours without what would have gnuplot draw otherwise: its own variables and the locale.
+std::vector<std::string> plain_environment() {
+  std::vector<std::string> out{"LC_ALL=C"};
+  for (char** line = environ; *line != nullptr; ++line) {
+    const std::string_view text = *line;
+    if (!text.starts_with("GNU") && !text.starts_with("LC_") && !text.starts_with("LANG") && !text.starts_with("FIT_"))
+      out.emplace_back(text);
+  }
+  return out;
+}
+
+/// The script comes as standard input and the figures leave as standard output, so that no name of a file stands in it.
+bool run_gnuplot(const std::string& program, const std::string& script, const std::string& drawn, const std::string& log) {
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, 0, script.c_str(), O_RDONLY, 0);
+  ::posix_spawn_file_actions_addopen(&actions, 1, drawn.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   ::posix_spawn_file_actions_addopen(&actions, 2, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  ::posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  std::string name = "gnuplot", file = script;
-  const std::array<char*, 3> arguments{name.data(), file.data(), nullptr};
+  std::string name = "gnuplot", defaults = "-d", input = "-";  // -d: neither ~/.gnuplot nor the system's
+  const std::array<char*, 4> arguments{name.data(), defaults.data(), input.data(), nullptr};
+  std::vector<std::string> variables = plain_environment();
+  std::vector<char*> environment;
+  for (auto& v : variables) environment.push_back(v.data());
+  environment.push_back(nullptr);
   pid_t child = 0;
-  const int failed = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int failed = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environment.data());
   ::posix_spawn_file_actions_destroy(&actions);
   int status = 1;
   return failed == 0 && ::waitpid(child, &status, 0) == child && status == 0;
@@ -164,28 +192,39 @@ rosin::outcome<std::vector<std::string>> draw(const std::vector<figure>& figures
   const auto program = program_on_path("gnuplot");
   const scratch_folder folder;
   if (!program) return *cannot_draw();
-  if (folder.path.empty()) return rosin::failure{"--report: no temporary folder could be made"};
-  const std::string script = folder.path + "/figures.gp", log = folder.path + "/log";
+  std::error_code error;
+  if (folder.path.empty()) {
+    const auto where = fs::temp_directory_path(error);
+    return rosin::failure{"no temporary folder could be made" +
+                          (error ? ": TMPDIR: " + error.message() : " in " + where.string())};
+  }
+  const std::string script = folder.path + "/figures.gp", drawn = folder.path + "/figures.svg", log = folder.path + "/log";
+  errno = 0;
   {
     std::ofstream out{script};
+    out.imbue(std::locale::classic());
     out.precision(9);
     out << "set encoding utf8\nset border 3 lc rgb '#444444'\nset tics nomirror textcolor rgb '#222222'\nset grid lc rgb "
            "'#e4e4e4' lw 0.8 lt 1\n"
            "set key right horizontal samplen 2.4 font ',12' maxrows 1\n"
            "set datafile missing 'NaN'\n";
-    for (std::size_t i = 0; i < figures.size(); ++i)
-      write_figure(out, figures[i], i + 1, folder.path + "/" + std::to_string(i) + ".svg");
-    if (!out) return rosin::failure{"--report: the temporary folder " + folder.path + " cannot be written"};
+    for (std::size_t i = 0; i < figures.size(); ++i) write_figure(out, figures[i], i + 1);
+    out.flush();
+    if (!out) return rosin::failure{script + ": cannot be written" + rosin::detail::system_reason()};
   }
-  if (!run_gnuplot(*program, script, log)) return rosin::failure{"--report: gnuplot failed: " + file_text(log)};
+  const bool ran = run_gnuplot(*program, script, drawn, log);
+  const std::string all = file_text(drawn), said = file_text(log);
+  if (!ran) return rosin::failure{"gnuplot failed: " + said};
   std::vector<std::string> svg;
-  for (std::size_t i = 0; i < figures.size(); ++i) {
-    const std::string text = file_text(folder.path + "/" + std::to_string(i) + ".svg");
-    const auto begin = text.find("<svg");
-    if (begin == std::string::npos || text.find("</svg>") == std::string::npos)
-      return rosin::failure{"--report: gnuplot drew nothing: " + file_text(log)};
-    svg.push_back(text.substr(begin));
+  for (std::size_t from = all.find("<svg"); from != std::string::npos; from = all.find("<svg", from)) {
+    const std::size_t end = all.find("</svg>", from);
+    if (end == std::string::npos) break;
+    svg.push_back(all.substr(from, end + 6 - from));
+    from = end;
   }
+  if (svg.size() != figures.size())
+    return rosin::failure{"gnuplot drew " + std::to_string(svg.size()) + " of " + std::to_string(figures.size()) +
+                          " figures: " + said};
   return svg;
 }
 

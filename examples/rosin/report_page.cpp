@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report_page.hpp"
 
+#include <iostream>
+
 namespace tool {
 
 namespace {
@@ -85,16 +87,23 @@ void write_body(std::ostream& out, const report_page& page, const std::vector<st
 
 }  // namespace
 
-std::optional<rosin::failure> write_page(const std::string& path, bool force, const report_page& page, const provenance& from) {
+exit_code write_page(const std::string& path, bool force, report_page page, const provenance& from) {
   const auto svg = draw(page.figures);
-  if (!svg) return rosin::failure{svg.error()};
-  return rosin::write_file(path, force ? rosin::overwrite::allow : rosin::overwrite::refuse, [&](std::ostream& out) {
+  if (!svg) {
+    std::string why = rosin::one_line("the figures are missing: " + svg.error());
+    why.erase(why.find_last_not_of(' ') + 1);
+    page.warnings.push_back(std::move(why));
+    std::cerr << "rosin: warning: " << page.warnings.back() << '\n';
+  }
+  const auto why = rosin::write_file(path, force ? rosin::overwrite::allow : rosin::overwrite::refuse, [&](std::ostream& out) {
     out << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
            "content=\"width=device-width, initial-scale=1\">\n<title>"
         << escaped(page.title) << "</title>\n<style>" << style << "</style>\n</head>\n<body>\n";
-    write_body(out, page, *svg, from);
+    write_body(out, page, svg ? *svg : std::vector<std::string>{}, from);
     out << "</body>\n</html>\n";
   });
+  if (why) return fail(why->message);
+  return svg ? exit_code::ok : exit_code::finding;
 }
 
 }  // namespace tool

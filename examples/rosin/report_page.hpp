@@ -17,8 +17,8 @@ struct report_page {
   std::vector<std::pair<std::string, std::string>> result;  ///< what it is, what it came to
 };
 
-/// Draws the figures and writes the page.
-[[nodiscard]] std::optional<rosin::failure> write_page(const std::string& path, bool force, const report_page& page,
-                                                       const provenance& from);
+/// Draws the figures and writes the page. Where figures cannot be drawn the page comes without them, with the reason in it and on
+/// standard error: exit_code::finding. Where it cannot be written, that is said: exit_code::bad_input.
+[[nodiscard]] exit_code write_page(const std::string& path, bool force, report_page page, const provenance& from);
 
 }  // namespace tool

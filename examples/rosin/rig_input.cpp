@@ -45,7 +45,7 @@ std::optional<checked_take> read_telling(const rosin::rig& rig, const rosin::tak
     return std::nullopt;
   }
   for (const auto& f : out->check.findings)
-    if (f.level != rosin::severity::note) warnings.push_back(sentence(rig, f));
+    if (f.level != rosin::severity::note) warnings.push_back(warning_of(rig, f));
   return *std::move(out);
 }
 
@@ -64,7 +64,10 @@ rosin::outcome<checked_take> read_sound_take(const rosin::rig& rig, const rosin:
   return rosin::failure{all};
 }
 
-std::string sentence(const rosin::rig& rig, const rosin::finding& finding) {
+namespace {
+
+/// Where it is: file, take, channel, time.
+std::string place_of(const rosin::rig& rig, const rosin::finding& finding) {
   const rosin::take* take = rig.find_take(finding.take);
   std::string out = take != nullptr ? take->file + ": " : std::string{};
   out += "take " + finding.take;
@@ -72,7 +75,18 @@ std::string sentence(const rosin::rig& rig, const rosin::finding& finding) {
   if (!finding.channel.empty()) out += ", channel " + finding.channel;
   out += ", " + in_digits(finding.start_s, "%.4f");
   if (finding.end_s > finding.start_s) out += " to " + in_digits(finding.end_s, "%.4f");
-  return out + " s: " + name_of(finding.level) + ": " + finding.what + "; " + finding.advice;
+  return out + " s: ";
+}
+
+}  // namespace
+
+std::string sentence(const rosin::rig& rig, const rosin::finding& finding) {
+  return place_of(rig, finding) + name_of(finding.level) + ": " + finding.what + "; " + finding.advice;
+}
+
+std::string warning_of(const rosin::rig& rig, const rosin::finding& finding) {
+  return place_of(rig, finding) + (finding.level == rosin::severity::error ? "error: " : "") + finding.what + "; " +
+         finding.advice;
 }
 
 json to_json(const rosin::finding& finding) {

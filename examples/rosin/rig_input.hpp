@@ -42,6 +42,8 @@ struct checked_take {
 
 /// "pluck-1.wav: take pluck-1 (rig.toml:34), channel near, 0.0041 s: clipped ...; lower the gain ..."
 [[nodiscard]] std::string sentence(const rosin::rig& rig, const rosin::finding& finding);
+/// The same for a list of warnings, which says by itself what its lines are.
+[[nodiscard]] std::string warning_of(const rosin::rig& rig, const rosin::finding& finding);
 [[nodiscard]] json to_json(const rosin::finding& finding);
 
 /// The nominal string. Where the rig file gives the impedance, the tension is the one that belongs to it, and `assumed`

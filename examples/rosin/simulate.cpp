@@ -116,7 +116,7 @@ std::optional<rosin::failure> write_takes(const simulate_options& given, const p
 std::optional<rosin::failure> write_tables_of_ends(const simulate_options& given, const rosin::rig& rig, const places& to) {
   for (const auto* end : {&rig.near, &rig.far}) {
     if (!*end || (*end)->kind != rosin::termination::form::table) continue;
-    const auto text = read_text(rig.path_of((*end)->file));
+    const auto text = rosin::read_file(rig.path_of((*end)->file));
     if (!text) return rosin::failure{text.error()};
     if (end == &rig.far && rig.near && rig.near->file == rig.far->file) continue;  // one file for both
     if (auto why = write_text(to.folder / (*end)->file, *text, given.existing())) return why;
@@ -207,7 +207,7 @@ json result_json(const simulation_plan& plan, const std::vector<simulated_take>&
 }
 
 rosin::outcome<std::string> declared_text(const std::string& file) {
-  auto text = read_text(file);
+  auto text = rosin::read_file(file);
   return text ? declaration(*text, file) : text;
 }
 
@@ -260,7 +260,7 @@ void add_simulate(CLI::App& app, exit_code& result) {
   command->add_option("--model", given->model, "With the corrected model of this diagnosis (rosin diagnose --json)")
       ->type_name("FILE");
   command->add_option("--seed", given->seed, "Everything drawn at random follows from it; overrides the rig file's")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->type_name("NUMBER");
   command->add_option("--format", given->format, "Of the truth's tables: csv, npy (NumPy structured array) or mat (MATLAB)")
       ->check(CLI::IsMember({"csv", "npy", "mat"}))

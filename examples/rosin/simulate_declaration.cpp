@@ -5,7 +5,7 @@
 #include <rosin/version.hpp>
 
 #include <algorithm>
-#include <fstream>
+#include <locale>
 #include <set>
 #include <sstream>
 
@@ -75,13 +75,6 @@ std::set<line_number> erase_secrets(toml::table& root, const std::vector<std::st
 
 }  // namespace
 
-rosin::outcome<std::string> read_text(const std::string& file) {
-  std::ifstream in{file, std::ios::binary};
-  std::ostringstream out;
-  if (!in || !(out << in.rdbuf())) return rosin::failure{file + ": cannot be read"};
-  return out.str();
-}
-
 rosin::outcome<std::string> declaration(const std::string& text, const std::string& file) {
   auto parsed = rosin::detail::parse_toml(text, file);
   if (!parsed) return rosin::failure{parsed.error()};
@@ -96,6 +89,7 @@ rosin::outcome<std::string> declaration(const std::string& text, const std::stri
   const auto again = rosin::detail::parse_toml(out, file);
   if (again && *again == root) return out;
   std::ostringstream anew;
+  anew.imbue(std::locale::classic());
   anew << head << root << '\n';
   return anew.str();
 }

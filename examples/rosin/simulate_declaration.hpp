@@ -11,8 +11,6 @@
 
 namespace tool {
 
-[[nodiscard]] rosin::outcome<std::string> read_text(const std::string& file);
-
 /// `text` is a rig file without errors; `file` is its name for messages.
 [[nodiscard]] rosin::outcome<std::string> declaration(const std::string& text, const std::string& file);
 

@@ -239,8 +239,9 @@ found_effect effect_from(const json& m) {
 }  // namespace
 
 rosin::outcome<diagnosed_model> read_diagnosed_model(const std::string& path) {
-  std::ifstream in{path};
-  const json document = json::parse(in, nullptr, false);
+  const auto text = rosin::read_file(path);
+  if (!text) return rosin::failure{text.error()};
+  const json document = json::parse(*text, nullptr, false);
   const auto wrong = [&](const std::string& what) { return rosin::failure{path + ": " + what}; };
   if (!document.is_object() || !document.contains("missing") || !document.contains("calibration") ||
       !document["calibration"].is_object() || !document["missing"].is_array())

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "sled.hpp"
 
+#include "digits.hpp"
 #include "recorder.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 namespace tool {
 
@@ -82,11 +82,9 @@ std::optional<std::string> sled::over() {
 
 std::string sled::shows() const {
   const std::scoped_lock lock{state_->mutex};
-  std::array<char, 64> text{};
   const auto& now = state_->latest;
-  if (std::isnan(now.speed_m_s)) std::snprintf(text.data(), text.size(), "sled %.0f mm", 1e3 * now.position_m);
-  else std::snprintf(text.data(), text.size(), "sled %.0f mm %.3f m/s", 1e3 * now.position_m, now.speed_m_s);
-  return text.data();
+  const std::string place = "sled " + in_digits(1e3 * now.position_m, "%.0f") + " mm";
+  return std::isnan(now.speed_m_s) ? place : place + " " + in_digits(now.speed_m_s, "%.3f") + " m/s";
 }
 
 std::string sled::stop() {
@@ -104,17 +102,17 @@ void add_sled_options(CLI::App& command, sled_options& given) {
   command.add_option("--distance", given.distance_m, "Of the stroke, with its sign")->type_name("M");
   command.add_option("--acceleration", given.acceleration_m_s2, "Of the stroke")
       ->type_name("M/S2")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_option("--rest", given.rest_s, "The take goes on for so long after the stroke")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
   command.add_option("--sled-baud", given.baud, "Speed of its serial line")->capture_default_str();
   command.add_flag("--home", given.home, "Look for the home switch first; the take begins after that");
   command.add_option("--home-seconds", given.home_s, "The homing may take so long")
       ->type_name("S")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command.add_flag("--unlock", given.unlock, "End an alarm first: you have looked, and the way is free");
 }

@@ -16,6 +16,7 @@
 #include <rosin/simulate/wave_stroke.hpp>
 
 #include <atomic>
+#include <charconv>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -101,10 +102,14 @@ rosin::outcome<sweep_plane> plan_axes(const sweep_options& given) {
 }
 
 std::optional<rosin::failure> read_shard(const std::string& text, sweep_setup& setup) {
-  unsigned long k = 0, n = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lu/%lu%c", &k, &n, &rest) != 2 || k < 1 || n < 1 || k > n || text.front() == '-')
-    return rosin::failure{"--shard: " + text + " is not K/N with 1 <= K <= N"};
+  const auto whole = [](std::string_view digits) {
+    std::size_t out = 0;
+    const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), out);
+    return end.ec == std::errc{} && end.ptr == digits.data() + digits.size() ? out : 0;
+  };
+  const auto slash = std::min(text.find('/'), text.size() - 1);
+  const std::size_t k = whole(std::string_view{text}.substr(0, slash)), n = whole(std::string_view{text}.substr(slash + 1));
+  if (k < 1 || n < 1 || k > n) return rosin::failure{"--shard: " + text + " is not K/N with 1 <= K <= N"};
   setup.shard = k - 1, setup.shards = n;
   return std::nullopt;
 }
@@ -145,8 +150,9 @@ std::optional<rosin::failure> read_setup(const rosin::rig& rig, const sweep_opti
 
 std::string conditions(const sweep_options& given, const sweep_setup& setup) {
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   const auto& s = setup.rig.string;
-  out << "plane " << given.plane << ", position " << (given.plane == "guettler" ? std::to_string(setup.position) : "x")
+  out << "plane " << given.plane << ", position " << (given.plane == "guettler" ? rosin::number_text(setup.position, "%f") : "x")
       << ", speed " << setup.speed_m_s << " m/s, " << given.periods << " periods at " << given.rate_Hz << " Hz, string "
       << s.fundamental_Hz << " Hz " << s.length_m << " m " << s.tension_N << " N " << s.bending_stiffness_Nm2 << " N m2, loss "
       << s.loss.quality << " " << s.loss.air_sqrt_Hz << " " << s.loss.internal_s << ", torsion " << setup.rig.torsion.speed_ratio
@@ -232,6 +238,8 @@ exit_code run_merge(const sweep_options& given) {
 }
 
 exit_code run(const sweep_options& given) {
+  if (!given.svg.empty())
+    if (const auto why = may_write_file(given.svg, true)) return fail(why->message, given.json);
   if (!given.merge.empty()) return run_merge(given);
   if (given.rig.empty()) return fail("rosin sweep: RIG is missing", given.json);
   const auto rig = rosin::load_rig(given.rig, rosin::take_files::to_be_made);
@@ -243,7 +251,11 @@ exit_code run(const sweep_options& given) {
   if (const auto why = read_setup(*rig, given, setup, notes)) return fail(why->message, given.json);
   plane->conditions = conditions(given, setup);
   std::error_code ignored;
-  if (std::filesystem::exists(given.out, ignored) && !given.force_overwrite) {
+  const bool there = std::filesystem::exists(given.out, ignored);
+  if (given.out == "-" || (there && !std::filesystem::is_regular_file(given.out, ignored)))
+    return fail(given.out + ": is no file; a sweep is gone on with from its file", given.json);
+  if (const auto why = rosin::cannot_write(given.out, rosin::overwrite::allow)) return fail(why->message, given.json);
+  if (there && !given.force_overwrite) {
     const auto before = read_plane(given.out);
     if (!before) return fail(before.error() + "; --force overwrites it", given.json);
     if (before->header() != plane->header()) return fail(given.out + ": holds another plane; --force overwrites it", given.json);
@@ -251,9 +263,10 @@ exit_code run(const sweep_options& given) {
   }
   if (const auto why = write_text(given.out, plane_text(*plane))) return fail(why->message, given.json);
   {
+    errno = 0;
     std::ofstream file{given.out, std::ios::binary | std::ios::app};
     fill(*plane, setup, given, file);
-    if (!file) return fail(given.out + ": cannot be written", given.json);
+    if (!file) return fail(given.out + ": cannot be written" + rosin::detail::system_reason(), given.json);
   }
   if (const auto why = write_text(given.out, plane_text(*plane))) return fail(why->message, given.json);  // now in order
   return finish(given, *plane, notes);
@@ -273,11 +286,11 @@ void add_sweep(CLI::App& app, exit_code& result) {
   command->add_option("--force-range", given->force, "Normal force in N, FIRST:LAST:COUNT");
   command->add_option("--acceleration", given->acceleration, "In m/s2, FIRST:LAST:COUNT");
   command->add_option("--speed", given->speed_m_s, "Final speed of the rod in m/s; else that of the first bowed take")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command->add_option("--periods", given->periods, "Length of each stroke in periods of the string")->capture_default_str();
   command->add_option("--rate", given->rate_Hz, "Steps of the contact per second")->capture_default_str();
   command->add_option("--threads", given->threads, "0: all cores")
-      ->check(CLI::Range(0, 1024).description(""))
+      ->check(between(0, 1024, "INT").description(""))
       ->capture_default_str();
   command->add_option("--shard", given->shard, "K/N: only every N-th point, from the K-th on")->capture_default_str();
   command->add_option("--merge", given->merge, "Files of one plane to be joined into --out; nothing is simulated")

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "sweep_plane.hpp"
 
+#include <rosin/core/number_text.hpp>
+#include <rosin/report/input_file.hpp>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iomanip>
+#include <locale>
 #include <sstream>
 
 namespace tool {
@@ -26,11 +28,7 @@ bool read_number(const std::string& text, Number& to) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-std::string number(double x) {
-  std::ostringstream out;
-  out << std::setprecision(9) << x;
-  return out.str();
-}
+std::string number(double x) { return rosin::number_text(x, "%.9g"); }
 
 std::string axis_text(const sweep_axis& a) {
   return a.name + " " + number(a.first) + ":" + number(a.last) + ":" + std::to_string(a.count);
@@ -63,13 +61,12 @@ constexpr std::array<look, 6> looks{{{"helmholtz", "#1b6ca8", "Helmholtz"},
 void draw_ticks(std::ostream& out, const sweep_axis& axis, bool across, double left, double top, double width, double height) {
   for (std::size_t i = 0; i < axis.count; i += std::max<std::size_t>(1, axis.count / 6)) {
     const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(axis.count);
-    std::ostringstream label;
-    label << std::setprecision(2) << axis.at(i);
+    const std::string label = rosin::number_text(axis.at(i), "%.2g");
     if (across)
-      out << "<text x='" << left + share * width << "' y='" << top + height + 18 << "' text-anchor='middle'>" << label.str()
+      out << "<text x='" << left + share * width << "' y='" << top + height + 18 << "' text-anchor='middle'>" << label
           << "</text>\n";
     else
-      out << "<text x='" << left - 6 << "' y='" << top + (1 - share) * height + 4 << "' text-anchor='end'>" << label.str()
+      out << "<text x='" << left - 6 << "' y='" << top + (1 - share) * height + 4 << "' text-anchor='end'>" << label
           << "</text>\n";
   }
 }
@@ -103,10 +100,9 @@ std::string sweep_plane::line(std::size_t index, const sweep_result& r) const {
 }
 
 rosin::outcome<sweep_plane> read_plane(const std::string& file) {
-  std::ifstream in{file, std::ios::binary};
-  std::ostringstream whole;
-  if (!in || !(whole << in.rdbuf())) return rosin::failure{file + ": cannot be read"};
-  std::string text = whole.str();
+  auto whole = rosin::read_file(file);
+  if (!whole) return rosin::failure{whole.error()};
+  std::string text = *std::move(whole);
   text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);  // a line cut short is no line
   const auto lines = split(text, '\n');
   sweep_plane plane;
@@ -150,6 +146,7 @@ std::string plane_svg(const sweep_plane& plane) {
   double longest = 1;
   for (const auto& [index, p] : plane.points) longest = std::max(longest, p.transient_periods);
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   out << "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 860 480' font-family='sans-serif' font-size='13'>\n<rect "
          "width='860' height='480' fill='#fff'/>\n";
   for (const auto& [index, point] : plane.points) {

@@ -7,6 +7,7 @@
 #include <rosin/hardware/durable_text.hpp>
 
 #include <algorithm>
+#include <locale>
 #include <sstream>
 
 namespace tool {
@@ -32,14 +33,13 @@ std::string without_takes(const std::string& text) {
   wanted->erase("take");
   if (rosin::detail::means(out, *wanted)) return out;
   std::ostringstream anew;
+  anew.imbue(std::locale::classic());
   anew << *wanted << '\n';
   return anew.str();
 }
 
 std::string figure(double x) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", x);
-  std::string out = text.data();
+  std::string out = rosin::number_text(x, "%.9g");
   if (out.find_first_of(".en") == std::string::npos) out += ".0";
   return out;
 }
@@ -47,8 +47,13 @@ std::string figure(double x) {
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) {
+      constexpr std::string_view digits = "0123456789abcdef";
+      out += std::string{"\\u00"} + digits[code >> 4U] + digits[code & 15U];
+    } else {
+      out += (c == '"' || c == '\\' ? "\\" : "") + std::string{c};
+    }
   }
   return out + '"';
 }
@@ -76,16 +81,16 @@ void add_take_options(CLI::App& command, take_plan& given) {
       ->capture_default_str();
   command.add_option("--wire", given.force_N, "Of a pluck: nominal breaking force of the wire")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--wire-tolerance", given.force_tolerance, "Its relative tolerance")->check(CLI::Range(0.0, 1.0));
+      ->check(positive());
+  command.add_option("--wire-tolerance", given.force_tolerance, "Its relative tolerance")->check(between(0.0, 1.0));
   command.add_option("--position", given.position, "Of bow or pluck, where it is not the rig's [contact]")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(between(0.0, 1.0));
   command.add_option("--speed", given.speed_m_s, "Of a bow: the sled's speed once it is steady")
       ->type_name("M/S")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_option("--normal-force", given.normal_force_N, "Of a bow: force of the rod on the string")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_flag("--hold-out", given.hold_out, "Never fitted, only predicted");
 }
 
@@ -131,7 +136,7 @@ rosin::outcome<rig_file_writer> rig_file_writer::open(const std::string& folder,
   if (!like.empty()) {
     const std::string from = fs::is_directory(like, error) ? like + "/rig.toml" : like;
     if (there) return rosin::failure{out.path() + ": exists already; --like is for a new rig"};
-    auto text = read_text(from);
+    auto text = rosin::read_file(from);
     if (!text) return rosin::failure{text.error()};
     auto declared = declaration(*text, from);
     if (!declared) return rosin::failure{declared.error()};

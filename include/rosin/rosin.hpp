@@ -16,6 +16,7 @@
 #include <rosin/version.hpp>
 
 #include <rosin/core/instantiate.hpp>
+#include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/core/pipeline.hpp>
 #include <rosin/core/stage.hpp>
@@ -279,6 +280,7 @@
 #include <rosin/hardware/wav_header.hpp>
 
 #include <rosin/report/csv.hpp>
+#include <rosin/report/input_file.hpp>
 #include <rosin/report/npy.hpp>
 #include <rosin/report/output_file.hpp>
 #include <rosin/report/table.hpp>

@@ -10,10 +10,10 @@
 #pragma once
 
 #include <rosin/acquire/rig.hpp>
+#include <rosin/core/number_text.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace rosin {
 
@@ -40,9 +40,7 @@ inline constexpr double default_position_tolerance = 0.005, default_tension_tole
 
 /// "key = 0.1749, why"
 [[nodiscard]] inline std::string sentence(const std::string& key, double value, const std::string& why) {
-  std::array<char, 32> digits{};
-  std::snprintf(digits.data(), digits.size(), "%.4g", value);
-  return key + " = " + digits.data() + ", " + why;
+  return key + " = " + number_text(value, "%.4g") + ", " + why;
 }
 
 /// The value given, or the default with the sentence that owns up to it.

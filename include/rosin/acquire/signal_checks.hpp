@@ -11,8 +11,7 @@
 #include <rosin/acquire/recording.hpp>
 #include <rosin/acquire/sample_runs.hpp>
 #include <rosin/acquire/stroke_motion.hpp>
-
-#include <cstdio>
+#include <rosin/core/number_text.hpp>
 
 namespace rosin {
 
@@ -63,11 +62,7 @@ struct take_check {
 namespace detail {
 
 /// A number as a person writes it.
-[[nodiscard]] inline std::string figure(double x, const char* format = "%.3g") {
-  std::array<char, 40> digits{};
-  std::snprintf(digits.data(), digits.size(), format, x);
-  return digits.data();
-}
+[[nodiscard]] inline std::string figure(double x, const char* form = "%.3g") { return number_text(x, form); }
 
 [[nodiscard]] inline std::size_t samples_in(const std::vector<sample_span>& spans) noexcept {
   std::size_t samples = 0;

@@ -199,7 +199,6 @@ namespace detail {
 /// A WAV file (RF64 where it is too large for one) of from.bits: 16, 24 or 32 PCM, or 32 or 64 floating point. What lies
 /// beyond full scale is clipped in PCM. Empty: it is there.
 [[nodiscard]] inline std::optional<failure> write_audio(const std::string& path, const recording& from, overwrite existing) {
-  if (auto why = cannot_write(path, existing)) return why;
   for (const auto& channel : from.channels)
     if (channel.size() != from.frames()) return failure{path + ": the channels are not of one length"};
   if (from.frames() == 0) return failure{path + ": there are no samples to write"};
@@ -207,17 +206,12 @@ namespace detail {
   info.samplerate = static_cast<int>(std::lround(from.sample_rate_Hz));
   info.channels = static_cast<int>(from.channels.size());
   info.format = detail::wav_format(from);
-  const std::string part = path + ".part";
-  detail::sndfile_handle file{sf_open(part.c_str(), SFM_WRITE, &info)};
-  if (!file) return failure{path + ": " + sf_strerror(nullptr)};
-  sf_command(file.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);  // holds the time: the same samples, another file
-  const std::string why = detail::write_frames(file.get(), from);
-  file.reset();
-  std::error_code error;
-  if (why.empty()) std::filesystem::rename(part, path, error);
-  else std::filesystem::remove(part, error);
-  if (why.empty() && !error) return std::nullopt;
-  return failure{path + ": " + (why.empty() ? error.message() : why)};
+  return replace_file(path, existing, [&](const std::string& part) {
+    const detail::sndfile_handle file{sf_open(part.c_str(), SFM_WRITE, &info)};
+    if (!file) return std::string{"cannot be written: "} + sf_strerror(nullptr);
+    sf_command(file.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);  // holds the time: the same samples, another file
+    return detail::write_frames(file.get(), from);
+  });
 }
 
 }  // namespace rosin

@@ -45,7 +45,7 @@ struct free_matvar {
 
 [[nodiscard]] inline bool put_comments(mat_t* file, const table& data) {
   std::string text;
-  for (const auto& line : data.comments) text += line + "\n";
+  for (const auto& line : data.comments) text += one_line(line) + "\n";
   if (text.empty()) return true;
   std::array<std::size_t, 2> shape{1, text.size()};
   const std::unique_ptr<matvar_t, free_matvar> variable{
@@ -57,21 +57,16 @@ struct free_matvar {
 
 [[nodiscard]] inline std::optional<failure> save_mat(const std::string& path, const table& data, overwrite existing) {
   if (!data.is_rectangular()) return failure{path + ": the columns are not of one length"};
-  if (auto why = cannot_write(path, existing)) return why;
   for (const auto& column : data.columns)
     if (!detail::is_matlab_name(column.name) || column.name == "comments")
       return failure{path + ": \"" + column.name + "\" cannot be the name of a variable in MATLAB"};
-  const std::string part = path + ".part";
-  std::unique_ptr<mat_t, detail::close_mat> file{Mat_CreateVer(part.c_str(), nullptr, MAT_FT_MAT5)};
-  if (!file) return failure{path + ": cannot be written"};
-  bool written = detail::put_comments(file.get(), data);
-  for (const auto& column : data.columns) written = written && detail::put_column(file.get(), column);
-  file.reset();
-  std::error_code error;
-  if (written) std::filesystem::rename(part, path, error);
-  else std::filesystem::remove(part, error);
-  if (written && !error) return std::nullopt;
-  return failure{path + ": cannot be written"};
+  return replace_file(path, existing, [&](const std::string& part) -> std::string {
+    errno = 0;
+    const std::unique_ptr<mat_t, detail::close_mat> file{Mat_CreateVer(part.c_str(), nullptr, MAT_FT_MAT5)};
+    bool written = file && detail::put_comments(file.get(), data);
+    for (const auto& column : data.columns) written = written && detail::put_column(file.get(), column);
+    return written ? std::string{} : "cannot be written" + detail::system_reason();
+  });
 }
 
 }  // namespace rosin

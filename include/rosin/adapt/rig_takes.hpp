@@ -117,6 +117,8 @@ inline take read_take(toml_fields fields, const rig& r) {
   if (kind && t.kind == take_kind::quiet) read_quiet(fields);
   if (kind) fields.unknown();  // without a kind, nobody can say which keys belong
   if (t.name.find_first_of("/\\") != std::string::npos) fields.refuse("name", "must not hold / or \\");
+  if (std::any_of(t.name.begin(), t.name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
+    fields.refuse("name", "must be one line, without control characters");
   if (t.file.starts_with('/')) fields.refuse("file", "must be a path relative to the folder of the rig file");
   return t;
 }

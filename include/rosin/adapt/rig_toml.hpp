@@ -16,8 +16,6 @@
 #include <rosin/report/csv.hpp>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace rosin {
 
@@ -169,10 +167,9 @@ enum class take_files { required, to_be_made };
 [[nodiscard]] inline outcome<rig> load_rig(const std::string& path, take_files wanted = take_files::required) {
   std::error_code ignored;
   const std::string file = std::filesystem::is_directory(path, ignored) ? path + "/rig.toml" : path;
-  std::ifstream stream{file, std::ios::binary};
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) return failure{file + ": cannot be read"};
-  const auto table = detail::parse_toml(text.str(), file);
+  const auto text = read_file(file);
+  if (!text) return failure{text.error()};
+  const auto table = detail::parse_toml(*text, file);
   if (!table) return failure{table.error()};
   problem_log log{file};
   rig r = detail::read_root(*table, file, log);

@@ -11,6 +11,7 @@
 #include <rosin/acquire/recording.hpp>
 #include <rosin/adapt/table_npy.hpp>
 #include <rosin/adapt/table_text.hpp>
+#include <rosin/core/number_text.hpp>
 
 #include <cstdio>
 
@@ -47,12 +48,6 @@ struct table_clock {
 
 namespace detail {
 
-[[nodiscard]] inline std::string short_number(double x) {
-  std::array<char, 32> digits{};
-  std::snprintf(digits.data(), digits.size(), "%.6g", x);
-  return digits.data();
-}
-
 /// A column of times: its step, or the row in which it is uneven.
 class time_column_reader {
 public:
@@ -77,10 +72,10 @@ public:
   }
   [[nodiscard]] std::string reason(std::size_t row) const {
     const double moved = (*times_)[row] - (*times_)[row - 1];
-    const std::string step = " where a step is " + short_number(step_s_) + " s";
-    if (moved < 0) return "the time goes back by " + short_number(-moved) + " s";
-    if (moved < step_s_) return "the time moves by " + short_number(moved) + " s" + step + ": a row too many";
-    return "the time jumps by " + short_number(moved) + " s" + step + ": " + short_number(std::round(moved / step_s_) - 1) +
+    const std::string step = " where a step is " + number_text(step_s_) + " s";
+    if (moved < 0) return "the time goes back by " + number_text(-moved) + " s";
+    if (moved < step_s_) return "the time moves by " + number_text(moved) + " s" + step + ": a row too many";
+    return "the time jumps by " + number_text(moved) + " s" + step + ": " + number_text(std::round(moved / step_s_) - 1) +
            " row(s) are missing";
   }
   /// Over the whole column, and how well the digits of the times tell it; a whole number of hertz where it may be one.
@@ -126,10 +121,10 @@ private:
   if (const auto row = reader.uneven()) return failure{from.place_of(file, *row) + place + reader.reason(*row)};
   const auto [rate, doubt] = reader.rate_Hz();
   if (!(rate >= 1 && rate <= 1e9))
-    return failure{file + place + "its steps are those of " + detail::short_number(rate) + " samples a second: times are in s"};
+    return failure{file + place + "its steps are those of " + number_text(rate) + " samples a second: times are in s"};
   if (clock.rate_Hz && std::abs(rate - *clock.rate_Hz) > std::max(1e-3 * rate, doubt))
-    return failure{file + place + "its steps are those of " + detail::short_number(rate) + " samples a second, but rate_Hz is " +
-                   detail::short_number(*clock.rate_Hz)};
+    return failure{file + place + "its steps are those of " + number_text(rate) + " samples a second, but rate_Hz is " +
+                   number_text(*clock.rate_Hz)};
   return rate;
 }
 

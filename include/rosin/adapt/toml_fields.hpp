@@ -8,13 +8,12 @@
 #pragma once
 
 #include <rosin/adapt/problem_log.hpp>
+#include <rosin/core/number_text.hpp>
 
 #include <toml++/toml.h>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <optional>
 
@@ -34,11 +33,7 @@ struct value_range {
            (high < std::numeric_limits<double>::infinity() ? (high_open ? " and less than " : " and at most ") + number(high)
                                                            : std::string{});
   }
-  [[nodiscard]] static std::string number(double x) {
-    std::array<char, 32> digits{};
-    std::snprintf(digits.data(), digits.size(), "%.9g", x);
-    return digits.data();
-  }
+  [[nodiscard]] static std::string number(double x) { return number_text(x, "%.9g"); }
 };
 
 /// Larger than zero and at most this.

@@ -18,6 +18,7 @@
 #include <rosin/calibrate/pickup_loss.hpp>
 #include <rosin/calibrate/pickup_pitch.hpp>
 #include <rosin/core/instantiate.hpp>
+#include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
 
 #include <Eigen/Dense>
@@ -155,7 +156,7 @@ void fit_laws(pickup_fit& fit, const found_partials& found, const glide_estimate
 }
 
 inline void add_warnings(pickup_fit& fit, double nominal_Hz) {
-  const auto percent = [](double v) { return std::to_string(std::round(1000 * v) / 10).substr(0, v < 0 ? 5 : 4) + " %"; };
+  const auto percent = [](double v) { return number_text(100 * v, "%.1f") + " %"; };
   const auto say = [&](bool when, std::string what) {
     if (when) fit.warnings.push_back(std::move(what));
   };
@@ -227,7 +228,7 @@ template <class = void>
   const double end = std::min(options.end_s, static_cast<double>(signal.size()) / rate_Hz),
                least = std::max(0.15, 12 / nominal_Hz);
   const auto heard = signal.first(static_cast<std::size_t>(std::max(end, 0.0) * rate_Hz));
-  const failure brief{"signal: less than " + std::to_string(least) + " s of ringing to look at"};
+  const failure brief{"signal: less than " + number_text(least) + " s of ringing to look at"};
   if (static_cast<double>(heard.size()) < least * rate_Hz) return brief;
   const double begin = options.release_s ? *options.release_s : detail::sound_begins_s(heard, rate_Hz);
   const baseband_bank bank{signal, rate_Hz, std::min(64.0, 0.45 * nominal_Hz)};

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_layout.hpp>
+#include <rosin/core/number_text.hpp>
 
 #include <numeric>
 
@@ -95,7 +96,7 @@ inline first_step find_step(const std::vector<double>& x, double drop, double pe
     const auto one = detail::find_step(near, take.strength_N, period), two = detail::find_step(far, take.strength_N, period);
     if (!one.found || !two.found)
       return failure{take.name + ": no release found in channel " + (one.found ? "far" : "near") +
-                     ": the force never falls by half of the declared " + std::to_string(take.strength_N) + " N"};
+                     ": the force never falls by half of the declared " + number_text(take.strength_N) + " N"};
     const auto begin = static_cast<std::size_t>(std::max(one.crosses, two.crosses));
     double lag = 0;
     for (int periods : {1, 4, 16}) {

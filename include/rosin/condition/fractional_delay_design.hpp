@@ -15,6 +15,7 @@
 #pragma once
 
 #include <rosin/condition/fractional_delay.hpp>
+#include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
 
 #include <array>
@@ -111,11 +112,11 @@ struct delay_kernel {
 /// about Kaiser's length, made longer until it keeps the limits.
 [[nodiscard]] inline outcome<delay_kernel> design_kaiser_delay(double delay_samples, const delay_limits& limits = {}) {
   const auto [bandwidth, error_dB] = limits;
-  if (!(std::abs(delay_samples) < 1e9)) return failure{"delay of " + std::to_string(delay_samples) + " samples: not below 1e9"};
+  if (!(std::abs(delay_samples) < 1e9)) return failure{"delay of " + number_text(delay_samples) + " samples: not below 1e9"};
   if (!(bandwidth > 0 && bandwidth <= 0.99))
-    return failure{"delay: bandwidth " + std::to_string(bandwidth) + " is not in 0 ... 0.99"};
+    return failure{"delay: bandwidth " + number_text(bandwidth) + " is not in 0 ... 0.99"};
   if (!(error_dB >= -280 && error_dB < 0))
-    return failure{"delay: error of " + std::to_string(error_dB) + " dB is not in -280 ... 0"};
+    return failure{"delay: error of " + number_text(error_dB) + " dB is not in -280 ... 0"};
 
   const double whole = std::floor(delay_samples), fraction = delay_samples - whole;
   const double estimate = (-error_dB - 12) / (4.57 * 2 * std::numbers::pi * (1 - bandwidth));  // a little short

@@ -13,6 +13,7 @@
 
 #include <rosin/calibrate/pickup_fit.hpp>
 #include <rosin/core/instantiate.hpp>
+#include <rosin/core/number_text.hpp>
 
 #include <cmath>
 #include <limits>
@@ -97,7 +98,7 @@ template <class = void>
     return failure{problem};
   const std::span<const double> all{s.values};
   const double end = std::min(s.to_s, static_cast<double>(all.size()) / s.rate_Hz), least = std::max(0.15, 12 / nominal_Hz);
-  const failure brief{"signal: less than " + std::to_string(least) + " s of ringing to look at"};
+  const failure brief{"signal: less than " + number_text(least) + " s of ringing to look at"};
   if (!(end > least)) return brief;
   const baseband_bank bank{all, s.rate_Hz, std::min(64.0, 0.45 * nominal_Hz)};
   const double begin = s.from_s >= 0 ? s.from_s

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <string>
 
+#include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/friction/contact_heat.hpp>
 #include <rosin/friction/friction_curves.hpp>
@@ -48,7 +49,7 @@ template <FrictionCurve Curve, FrictionCurve Shape, class T = typename Curve::sc
   const T slowest = fastest_m_s * T(1e-7), ratio = std::pow(T(1e7), T(1) / 512);
   for (T v = slowest; v * ratio <= fastest_m_s; v *= ratio)
     if (!(rise(v * ratio) > rise(v)))
-      return failure{"yield curve: the steady temperature falls with speed at " + std::to_string(v) + " m/s"};
+      return failure{"yield curve: the steady temperature falls with speed at " + number_text(v) + " m/s"};
   yield_curve<T> table;
   table.spacing_K = rise(fastest_m_s) / T(yield_curve<T>::entries - 1);
   for (std::size_t i = 0; i < table.value.size(); ++i) {

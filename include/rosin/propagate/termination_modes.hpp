@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/math/levenberg_marquardt.hpp>
 #include <rosin/propagate/termination.hpp>
@@ -208,7 +209,7 @@ template <Termination End>
   auto found = detail::mode_fit(end, limits).run();
   if (!(found.mismatch <= limits.refuse))
     return failure{"termination: " + std::to_string(found.end.modes.size()) + " modes come no nearer to its reflection than " +
-                   std::to_string(found.mismatch) + " of what moves"};
+                   number_text(found.mismatch, "%.3g") + " of what moves"};
   return found;
 }
 

@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/math/fft.hpp>
 #include <rosin/propagate/termination.hpp>
@@ -116,8 +117,8 @@ private:
     if (table[k].m_sN.real() < lowest) lowest = table[k].m_sN.real(), lowest_at = table[k].frequency_Hz;
   }
   if (given > forgive * (given + taken))
-    return failure{"the admittance is not passive: its real part is " + std::to_string(lowest) + " m/s per N at " +
-                   std::to_string(lowest_at) + " Hz; a termination takes energy (check sign, phase and columns)"};
+    return failure{"the admittance is not passive: its real part is " + number_text(lowest) + " m/s per N at " +
+                   number_text(lowest_at) + " Hz; a termination takes energy (check sign, phase and columns)"};
   table_termination out;
   out.repaired = given > 0 ? given / (given + taken) : 0;
   out.memory_s_ = std::min(0.5, 2 / closest);
@@ -186,8 +187,8 @@ private:
     const std::complex<double> z = out.relative_admittance(f);
     const double reflected = std::abs((z - 1.0) / (z + 1.0));
     if (!(reflected < 1 + 1e-3))
-      return failure{"the reflection function is not passive: " + std::to_string(reflected) +
-                     " times as much as arrives comes back at " + std::to_string(f) + " Hz"};
+      return failure{"the reflection function is not passive: " + number_text(reflected) +
+                     " times as much as arrives comes back at " + number_text(f) + " Hz"};
   }
   return out;
 }

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // Tables to and from text: comma-separated, comment lines (#) above one header line, a point as decimal mark whatever the
-// locale says, an empty field where a value is unknown (NaN).
+// locale says, an empty field where a value is unknown (NaN). A comment of several lines becomes one line; a name that holds a comma or
+// a quote stands in quotes, which are doubled within (RFC 4180).
 //
 #pragma once
 
-#include <rosin/report/output_file.hpp>
+#include <rosin/core/number_text.hpp>
+#include <rosin/report/input_file.hpp>
 #include <rosin/report/table.hpp>
 
 #include <algorithm>
@@ -20,9 +22,19 @@
 
 namespace rosin {
 
+/// A field of the header line, in quotes where it has to be.
+[[nodiscard]] inline std::string csv_name(const std::string& name) {
+  const std::string line = one_line(name);
+  if (line.find_first_of(",\"") == std::string::npos && !line.starts_with('#') && !line.starts_with(' ') && !line.ends_with(' '))
+    return line;
+  std::string out = "\"";
+  for (const char c : line) out += c == '"' ? std::string{"\"\""} : std::string{c};
+  return out + "\"";
+}
+
 inline void write_csv(std::ostream& out, const table& data) {
-  for (const auto& line : data.comments) out << "# " << line << '\n';
-  for (std::size_t c = 0; c < data.columns.size(); ++c) out << (c > 0 ? "," : "") << data.columns[c].name;
+  for (const auto& line : data.comments) out << "# " << one_line(line) << '\n';
+  for (std::size_t c = 0; c < data.columns.size(); ++c) out << (c > 0 ? "," : "") << csv_name(data.columns[c].name);
   std::string text = "\n";
   for (std::size_t row = 0; row < data.rows(); ++row) {
     for (std::size_t c = 0; c < data.columns.size(); ++c) {
@@ -47,33 +59,39 @@ inline void write_csv(std::ostream& out, const table& data) {
 
 namespace detail {
 
-/// Without white space and quotes around it.
+/// Without white space around it.
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) noexcept {
-  constexpr std::string_view blank = " \t\r\"";
+  constexpr std::string_view blank = " \t\r";
   const auto first = text.find_first_not_of(blank);
   return first == std::string_view::npos ? std::string_view{} : text.substr(first, text.find_last_not_of(blank) - first + 1);
 }
 
-/// Calls use(index, field) for each field of a line; the number of fields.
+/// What stands between quotes, the doubled ones within made single.
+[[nodiscard]] inline std::string unquoted(std::string_view field) {
+  if (field.size() < 2 || field.front() != '"' || field.back() != '"') return std::string{field};
+  std::string out;
+  for (std::size_t i = 1; i + 1 < field.size(); ++i)
+    if (out += field[i]; field[i] == '"' && field[i + 1] == '"' && i + 2 < field.size()) ++i;
+  return out;
+}
+
+/// Calls use(index, field) for each field of a line, which may stand in quotes; the number of fields.
 template <class Use>
 std::size_t each_field(std::string_view line, Use use) {
   std::size_t index = 0;
   for (;; ++index) {
-    const auto comma = line.find(',');
+    std::size_t comma = 0;
+    for (bool quoted = false; comma < line.size() && (quoted || line[comma] != ','); ++comma) quoted ^= line[comma] == '"';
     use(index, trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return index + 1;
+    if (comma == line.size()) return index + 1;
     line.remove_prefix(comma + 1);
   }
 }
 
 /// Empty or "nan": NaN. Nothing at all: no number.
 [[nodiscard]] inline std::optional<double> field_value(std::string_view field) noexcept {
-  if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (field.front() == '+') field.remove_prefix(1);
-  double value = 0;
-  const auto end = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (end.ec == std::errc::result_out_of_range) return std::nullopt;
-  return end.ec == std::errc{} && end.ptr == field.data() + field.size() ? std::optional{value} : std::nullopt;
+  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = trimmed(field.substr(1, field.size() - 2));
+  return field.empty() ? std::numeric_limits<double>::quiet_NaN() : number_from(field);
 }
 
 /// One row into the columns; what is wrong with it, if anything.
@@ -103,7 +121,7 @@ std::size_t each_field(std::string_view line, Use use) {
     if (text.starts_with('#')) {
       data.comments.emplace_back(detail::trimmed(text.substr(1)));
     } else if (data.columns.empty()) {
-      detail::each_field(text, [&](std::size_t, std::string_view field) { data.add(std::string{field}, {}); });
+      detail::each_field(text, [&](std::size_t, std::string_view field) { data.add(detail::unquoted(field), {}); });
     } else if (const auto wrong = detail::read_csv_row(text, data); !wrong.empty()) {
       return failure{name + ":" + std::to_string(number) + ": " + wrong};
     }
@@ -113,9 +131,9 @@ std::size_t each_field(std::string_view line, Use use) {
 }
 
 [[nodiscard]] inline outcome<table> read_csv(const std::string& path) {
-  std::error_code ignored;
-  std::ifstream in{path, std::ios::binary};
-  if (!in || std::filesystem::is_directory(path, ignored)) return failure{path + ": cannot be read"};
+  auto text = read_file(path);
+  if (!text) return failure{text.error()};
+  std::istringstream in{*std::move(text)};
   return read_csv(in, path);
 }
 

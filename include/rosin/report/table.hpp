@@ -13,6 +13,13 @@
 
 namespace rosin {
 
+/// What a comment line holds: line breaks and other control characters have become spaces.
+[[nodiscard]] inline std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return text;
+}
+
 struct table_column {
   std::string name;  ///< with its unit, as force_N
   std::vector<double> values;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/simulate/energy_account.hpp>
 #include <rosin/simulate/modal_contact.hpp>
@@ -178,7 +179,7 @@ template <class Motion>
   if (!travels(motion)) return {};
   for (double t = 0; t <= stroke.duration_s; t += 1 / sample_rate_Hz)
     if (const double x = place_of(motion, t, 0); !(x > 0 && x < 1))
-      return "contact: it travels beyond an end of the string at " + std::to_string(t) + " s";
+      return "contact: it travels beyond an end of the string at " + number_text(t) + " s";
   return {};
 }
 

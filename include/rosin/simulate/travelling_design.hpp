@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/core/instantiate.hpp>
+#include <rosin/core/number_text.hpp>
 #include <rosin/simulate/wave_design.hpp>
 #include <rosin/simulate/wave_way.hpp>
 
@@ -133,8 +134,8 @@ template <class = void>
   }
   for (const double position : {range.least, (range.least + range.most) / 2, range.most})
     if (const double gain = detail::largest_stuck_gain(k, position, 2 * whole); !(gain < 1))
-      return failure{"contact: where it sticks at " + std::to_string(position) +
-                     " of the length the string would not be stable (gain " + std::to_string(gain) +
+      return failure{"contact: where it sticks at " + number_text(position) +
+                     " of the length the string would not be stable (gain " + number_text(gain) +
                      "); it may be at a higher rate of the steps, or a little further on"};
   if (rig.torsion.present())
     d.turn = detail::turn_modes(rig, d.limits, k.step_s), d.turn_stiffness_N_m = detail::turn_stiffness_N_m(rig);

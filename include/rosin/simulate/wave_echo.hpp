@@ -7,6 +7,7 @@
 //
 #pragma once
 
+#include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/propagate/transmission.hpp>
 #include <rosin/simulate/modal_string.hpp>
@@ -77,7 +78,7 @@ template <class Echo>
   if (far == 0) std::swap(loop.echo[0], loop.echo[1]);
   const double gain = largest_gain(loop, period);
   if (!(gain < 1))
-    return failure{"echo: the loop would not be stable (gain " + std::to_string(gain) + "); raise the rate of the steps"};
+    return failure{"echo: the loop would not be stable (gain " + number_text(gain) + "); raise the rate of the steps"};
   return loop;
 }
 

@@ -10,6 +10,7 @@ TEST_CASE("[[take]]: each key, its type, range and name") {
       {"name = \"pluck-1\"\n", "", "rig.toml:45: take[0].name: is missing"},
       {"name = \"pluck-1\"", "name = \"\"", "rig.toml:46: take[0].name: must not be empty"},
       {"name = \"pluck-1\"", "name = \"a/b\"", "rig.toml:46: take[0].name: must not hold / or \\"},
+      {"name = \"pluck-1\"", "name = \"pluck\\n1\"", "rig.toml:46: take[0].name: must be one line, without control characters"},
       {"name = \"bow-1\"", "name = \"pluck-1\"",
        "rig.toml:59: take[2].name: \"pluck-1\" is the name of an earlier take, line 45"},
       {"kind = \"pluck\"\n", "", "rig.toml:45: take[0].kind: is missing"},

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <support/comma_locale.hpp>
 #include <support/temporary_folder.hpp>
 
 #include <numbers>
@@ -76,6 +77,37 @@ TEST_CASE("a column of one: an empty line is a row without a value") {
   REQUIRE(t);
   REQUIRE(t->rows() == 3);
   CHECK(std::isnan(t->columns[0].values[1]));
+}
+
+TEST_CASE("whatever stands in comments and names, the table is read again") {
+  rosin::table t;
+  t.comments = {"rig first line\nsecond line, of two\r\n\ttitle", "\"quoted\" 100 % #", ""};
+  t.add("a,b", {1, 2});
+  t.add("say \"x\"", {3, unknown});
+  t.add("#c\n[d]", {5, 6});
+  std::ostringstream out;
+  rosin::write_csv(out, t);
+  CHECK(out.str() ==
+        "# rig first line second line, of two   title\n# \"quoted\" 100 % #\n# \n"
+        "\"a,b\",\"say \"\"x\"\"\",\"#c [d]\"\n1,3,5\n2,,6\n");
+  const auto back = read(out.str());
+  REQUIRE(back);
+  CHECK(back->comments[0] == "rig first line second line, of two   title");
+  CHECK(back->comments[1] == t.comments[1]);
+  CHECK(back->columns[0].name == "a,b");
+  CHECK(back->columns[1].name == "say \"x\"");
+  CHECK(back->columns[2].name == "#c [d]");
+  CHECK(back->columns[2].values == t.columns[2].values);
+}
+
+TEST_CASE("tables are the same in a program with decimal commas") {
+  rosin::table t;
+  t.add("x", {12345.5, -1e-7});
+  const test::comma_locale german;
+  std::ostringstream out;
+  rosin::write_csv(out, t);
+  CHECK(out.str() == "x\n12345.5\n-1e-07\n");
+  CHECK(read(out.str())->columns[0].values == t.columns[0].values);
 }
 
 TEST_CASE("what is no table is named with its line") {

@@ -1,0 +1,22 @@
+# rosin_glob(OUT [RECURSE] [FOLDERS] [RELATIVE] [FROM FOLDER] PATTERN): what file(GLOB) finds below the current source folder, also where [, * or ? stand in
+# the path of the checkout itself, which file(GLOB) takes for wildcards. RELATIVE: the names as seen from there.
+function(rosin_glob out)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "RECURSE;FOLDERS;RELATIVE" "FROM" "")
+  set(how GLOB)
+  if(arg_RECURSE)
+    set(how GLOB_RECURSE)
+  endif()
+  if(NOT arg_FOLDERS)
+    set(arg_FOLDERS FALSE)
+  endif()
+  if(NOT arg_FROM)
+    set(arg_FROM "${CMAKE_CURRENT_SOURCE_DIR}")
+  endif()
+  string(REGEX REPLACE "[[*?]" "[\\0]" here "${arg_FROM}")
+  file(${how} found LIST_DIRECTORIES ${arg_FOLDERS} RELATIVE "${arg_FROM}" CONFIGURE_DEPENDS
+    "${here}/${arg_UNPARSED_ARGUMENTS}")
+  if(NOT arg_RELATIVE)
+    list(TRANSFORM found PREPEND "${arg_FROM}/")
+  endif()
+  set(${out} "${found}" PARENT_SCOPE)
+endfunction()
