@@ -11,6 +11,8 @@
 
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -183,3 +185,5 @@ template <class = void>
 ROSIN_INSTANTIATE(take_check check_take(const rig&, const take&, const take_signals&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

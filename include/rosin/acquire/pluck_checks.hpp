@@ -16,6 +16,8 @@
 #include <rosin/acquire/ringing.hpp>
 #include <rosin/acquire/signal_checks.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin::detail {
 
 /// What is known of a pluck when the checks begin.
@@ -183,3 +185,5 @@ inline bool check_steps(take_check& out, const pluck_view& view, pluck_steps& st
 }
 
 }  // namespace rosin::detail
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A value and its standard deviation.
@@ -147,3 +149,5 @@ inline void note_model(const rig& r, rig_values& out) {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 #include <limits>
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct ringing {
@@ -114,3 +116,5 @@ ROSIN_INSTANTIATE(std::optional<ringing> find_ringing(std::span<const double>, d
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

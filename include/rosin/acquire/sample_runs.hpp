@@ -15,6 +15,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct sample_span {
@@ -142,3 +144,5 @@ namespace detail {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -23,6 +23,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -148,3 +150,5 @@ line_fit one_or_two_lines(std::span<const std::complex<double>> z, double rate_H
 ROSIN_INSTANTIATE(line_fit one_or_two_lines(std::span<const std::complex<double>>, double, const line_fit&, double, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -31,6 +31,8 @@
 #include <string>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct pickup_options {
@@ -240,3 +242,5 @@ template <class = void>
 ROSIN_INSTANTIATE(outcome<pickup_fit> fit_pickup(std::span<const double>, double, double, const pickup_options&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

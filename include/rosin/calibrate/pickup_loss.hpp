@@ -26,6 +26,8 @@
 #include <numbers>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Decay of a partial with its own standard deviation.
@@ -155,3 +157,5 @@ template <class = void>
 ROSIN_INSTANTIATE(loss_estimate fit_loss(const std::vector<measured_decay>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -26,6 +26,8 @@
 #include <numbers>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct robust_fit {
@@ -135,3 +137,5 @@ template <class Model>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,8 @@
 
 #include <numeric>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Starting values: the common pitch; per take release and position.
@@ -118,3 +120,5 @@ inline first_step find_step(const std::vector<double>& x, double drop, double pe
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

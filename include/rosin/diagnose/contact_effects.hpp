@@ -21,6 +21,8 @@
 #include <rosin/diagnose/contact_width.hpp>
 #include <rosin/diagnose/rod_beside_bristles.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct contact_findings {
@@ -257,3 +259,5 @@ template <class = void>
 ROSIN_INSTANTIATE(contact_findings contact_hypotheses(const std::vector<contact_take>&, const contact_model&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,8 @@
 #include <rosin/diagnose/stick_columns.hpp>
 #include <rosin/diagnose/stick_design.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Records, the samples that stick, and the equation as declared.
@@ -298,3 +300,5 @@ namespace detail {
 }  // namespace detail
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

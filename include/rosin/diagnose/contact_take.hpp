@@ -22,6 +22,8 @@
 #include <rosin/diagnose/string_side.hpp>
 #include <rosin/torsion/torsion_fit.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One bowed take after reconstruction; arrays of one length, NaN at both ends where a sample cannot be known.
@@ -193,3 +195,5 @@ struct contact_hypothesis {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

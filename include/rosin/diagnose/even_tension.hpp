@@ -18,6 +18,8 @@
 #include <rosin/condition/record_at.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// e(t) of a stroke of a string between rigid ends: forces in newtons, delays from either end to the bow; E A and T in newtons.
@@ -105,3 +107,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

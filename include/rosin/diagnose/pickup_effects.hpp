@@ -13,6 +13,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_law_fit.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct law_effect {
@@ -143,3 +145,5 @@ ROSIN_INSTANTIATE(fitted_law with_effect(const line_table&, const fitted_law&, c
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -20,6 +20,8 @@
 #include <array>
 #include <utility>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One free number of a law.
@@ -238,3 +240,5 @@ template <class Real = double>
 ROSIN_INSTANTIATE(double predicted_log_likelihood(const line_table&, const fitted_law&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -16,6 +16,8 @@
 #include <complex>
 #include <limits>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// c1 exp(s t) + c2 exp(s' t), s = -decay + i w, s' = -decay + i (w + shift).
@@ -227,3 +229,5 @@ template <class = void>
 ROSIN_INSTANTIATE(pair_found find_pair(const std::vector<const partial_track*>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

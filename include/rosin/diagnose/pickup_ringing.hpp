@@ -21,6 +21,8 @@
 #include <utility>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What a channel's partials have to be multiplied by to be slopes of the string, all but for one factor.
@@ -126,3 +128,5 @@ ROSIN_INSTANTIATE(outcome<pickup_ringing> listen(const pickup_signal&, double, c
                                                  const pickup_options&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

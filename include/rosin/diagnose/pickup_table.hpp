@@ -13,6 +13,8 @@
 
 #include <map>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct string_line {
@@ -164,3 +166,5 @@ template <class = void>
 ROSIN_INSTANTIATE(line_table table_of(const std::vector<pickup_ringing>&, const structure_hypothesis&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,8 @@
 
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin::detail {
 
 /// Cost of a fit where the channels are weighed alike; infinite where it failed.
@@ -90,3 +92,5 @@ void put_in_order(const scene_data& data, const scene_fit& already, std::vector<
 }
 
 }  // namespace rosin::detail
+
+#include <rosin/core/macros_back.ipp>

@@ -13,6 +13,8 @@
 
 #include <rosin/diagnose/scene_plucks.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct score_result {
@@ -256,3 +258,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 
 #include <list>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Takes in a narrower band. `takes` has views into `versions`, which stay where they are when this is moved.
@@ -71,3 +73,5 @@ template <class = void>
 ROSIN_INSTANTIATE(contact_hypothesis rod_beside_bristles(const stick_bench&, const std::vector<contact_take>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

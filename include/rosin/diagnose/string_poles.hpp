@@ -15,6 +15,8 @@
 
 #include <algorithm>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -174,3 +176,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::vector<damped_line> decay_lines(const pluck_scene&, double, const std::vector<std::complex<double>>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -24,6 +24,8 @@
 
 #include <limits>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One slip, its flanks included; forces and velocities counted the way the rod moves.
@@ -188,3 +190,5 @@ inline void measure_loop(slip_loop& s, std::span<const double> force_N, std::spa
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -24,6 +24,8 @@
 #include <map>
 #include <thread>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A MotionStage.
@@ -293,3 +295,5 @@ private:
 static_assert(MotionStage<grbl_stage>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -35,6 +35,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Of a least-squares problem at a point. `gradient` points downhill: it is minus half the gradient of the cost.
@@ -196,3 +198,5 @@ requires LeastSquares<Problem, Point>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

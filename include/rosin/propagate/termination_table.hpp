@@ -20,6 +20,8 @@
 #include <span>
 #include <string>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Y of a termination in m/s per N at one frequency.
@@ -195,3 +197,5 @@ private:
 static_assert(Termination<table_termination> && Termination<reflection_termination>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -28,6 +28,8 @@
 #include <limits>
 #include <span>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Which of the two versions of force and velocity is made; of one alone both fields of a frame hold it.
@@ -234,3 +236,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -23,6 +23,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Two channels as Fourier series over one stretch.
@@ -149,3 +151,5 @@ ROSIN_INSTANTIATE(outcome<periodic_part> find_periodic_part(std::span<const doub
                                                             double, int))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -16,6 +16,8 @@
 #include <memory>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What happened under the bow, sample by sample at the recording's rate; NaN where it cannot be known.
@@ -84,3 +86,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

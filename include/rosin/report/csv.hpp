@@ -18,6 +18,8 @@
 #include <sstream>
 #include <string_view>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 inline void write_csv(std::ostream& out, const table& data) {
@@ -120,3 +122,5 @@ std::size_t each_field(std::string_view line, Use use) {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,8 @@
 #include <rosin/simulate/modal_string.hpp>
 #include <rosin/simulate/wave_loop.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Round trips of a wave to either end.
@@ -90,3 +92,5 @@ template <class Echo>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

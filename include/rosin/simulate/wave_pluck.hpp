@@ -12,6 +12,8 @@
 #include <rosin/simulate/modal_pluck.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The force that the wire takes away, as a law that asks the string nothing. A release at once runs over the step around it, so
@@ -66,3 +68,5 @@ template <class T = double>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

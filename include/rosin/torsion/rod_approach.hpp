@@ -26,6 +26,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Counted from a take's first sample.
@@ -117,3 +119,5 @@ template <class Real = double>
 ROSIN_INSTANTIATE(rod_approach find_rod_approach(std::span<const double>, double, double, double, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

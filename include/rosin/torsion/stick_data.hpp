@@ -17,6 +17,8 @@
 #include <array>
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One reconstructed stroke. Samples that are not numbers may stand at both ends only.
@@ -200,3 +202,5 @@ ROSIN_INSTANTIATE(stick_rows pick(const std::vector<char>&, const std::vector<do
                                   const std::vector<std::vector<double>>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -24,6 +24,8 @@
 #include <optional>
 #include <string>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The ratios torsional / transverse, and the quality.
@@ -288,3 +290,5 @@ template <class = void>
 ROSIN_INSTANTIATE(outcome<torsion_fit_result> fit_torsion(const std::vector<stick_take>&, std::optional<torsion_values>))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>
