@@ -15,6 +15,12 @@ rosin::outcome<rosin::rig_folder> open_rig(const std::string& path, provenance& 
   return folder;
 }
 
+std::vector<std::string> doubts_of(const rosin::rig_folder& folder) {
+  std::vector<std::string> out;
+  for (const auto& f : folder.doubts) out.push_back(sentence(folder.rig, f));
+  return out;
+}
+
 rosin::outcome<checked_take> read_take(const rosin::rig& rig, const rosin::take& take, provenance& from) {
   auto signals = rosin::load_take(rig, take);
   if (!signals) return rosin::failure{signals.error()};
@@ -52,19 +58,21 @@ rosin::outcome<checked_take> read_sound_take(const rosin::rig& rig, const rosin:
 
 std::string sentence(const rosin::rig& rig, const rosin::finding& finding) {
   const rosin::take* take = rig.find_take(finding.take);
+  const std::string told = name_of(finding.level) + ": " + finding.what + "; " + finding.advice;
+  if (finding.take.empty()) return rig.file + ": " + told;
   std::string out = take != nullptr ? take->file + ": " : std::string{};
   out += "take " + finding.take;
   if (take != nullptr) out += " (" + rig.file + ":" + std::to_string(take->line) + ")";
   if (!finding.channel.empty()) out += ", channel " + finding.channel;
   out += ", " + in_digits(finding.start_s, "%.4f");
   if (finding.end_s > finding.start_s) out += " to " + in_digits(finding.end_s, "%.4f");
-  return out + " s: " + name_of(finding.level) + ": " + finding.what + "; " + finding.advice;
+  return out + " s: " + told;
 }
 
 json to_json(const rosin::finding& finding) {
   return {{"severity", name_of(finding.level)},
           {"kind", finding.kind},
-          {"take", finding.take},
+          {"take", finding.take.empty() ? json(nullptr) : json(finding.take)},
           {"channel", finding.channel.empty() ? json(nullptr) : json(finding.channel)},
           {"time_s", {finding.start_s, finding.end_s}},
           {"what", finding.what},

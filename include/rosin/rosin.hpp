@@ -114,6 +114,7 @@
 #include <rosin/reconstruct/sensitivity.hpp>
 #include <rosin/reconstruct/streaming_design.hpp>
 #include <rosin/reconstruct/streaming_reconstructor.hpp>
+#include <rosin/reconstruct/stroke_doubts.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
 
 #include <rosin/torsion/contact_signal.hpp>
