@@ -15,6 +15,7 @@
 
 #include <rosin/version.hpp>
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/core/pipeline.hpp>

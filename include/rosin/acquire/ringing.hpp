@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/math/spectrum_line.hpp>
 

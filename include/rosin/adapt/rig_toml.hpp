@@ -14,6 +14,7 @@
 #include <rosin/adapt/rig_sensors.hpp>
 #include <rosin/adapt/rig_takes.hpp>
 #include <rosin/adapt/toml_guard.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/report/csv.hpp>
 
 #include <filesystem>

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/calibrate/partial_line.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/math/fft.hpp>
 

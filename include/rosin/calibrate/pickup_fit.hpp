@@ -17,6 +17,7 @@
 #include <rosin/calibrate/pickup_glide.hpp>
 #include <rosin/calibrate/pickup_loss.hpp>
 #include <rosin/calibrate/pickup_pitch.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/core/outcome.hpp>
 

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <rosin/calibrate/pickup_regression.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/propagate/string_parameters.hpp>
 

@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/math/median.hpp>
 #include <rosin/math/robust_loss.hpp>

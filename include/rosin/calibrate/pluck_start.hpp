@@ -9,6 +9,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_layout.hpp>
+#include <rosin/core/finite_math.hpp>
 
 #include <numeric>
 

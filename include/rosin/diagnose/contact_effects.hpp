@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_as_one.hpp>
 #include <rosin/diagnose/contact_bristles.hpp>

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/bristle_yield.hpp>
 #include <rosin/diagnose/string_side.hpp>

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <rosin/condition/record_at.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>
 
 #include <rosin/core/macros_aside.ipp>

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/calibrate/pickup_fit.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 
 #include <cmath>

@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/math/at_once.hpp>

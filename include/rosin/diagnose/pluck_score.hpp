@@ -11,6 +11,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/diagnose/scene_plucks.hpp>
 
 #include <rosin/core/macros_aside.ipp>

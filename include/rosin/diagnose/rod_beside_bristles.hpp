@@ -9,6 +9,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick_effects.hpp>
 

@@ -20,6 +20,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/friction/slip_phases.hpp>
 
 #include <limits>

@@ -25,6 +25,8 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
+
 #include <Eigen/Dense>
 
 #include <algorithm>

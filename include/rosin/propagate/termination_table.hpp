@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/math/fft.hpp>
 #include <rosin/propagate/termination.hpp>

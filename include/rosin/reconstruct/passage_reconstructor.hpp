@@ -18,6 +18,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/math/lanes.hpp>
 #include <rosin/reconstruct/passage_sums.hpp>
 #include <rosin/reconstruct/streaming_reconstructor.hpp>

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_start.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 
 #include <Eigen/Dense>

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <rosin/condition/overlap_save.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/reconstruct/bow_point_transfer.hpp>
 

@@ -11,6 +11,8 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,8 +20,6 @@
 #include <span>
 #include <string>
 #include <vector>
-
-#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -149,5 +149,3 @@ inline void doubt_level(const stroke_view& s, std::vector<stroke_doubt>& out) {
 }
 
 }  // namespace rosin
-
-#include <rosin/core/macros_back.ipp>

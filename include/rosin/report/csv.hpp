@@ -6,6 +6,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/report/output_file.hpp>
 #include <rosin/report/table.hpp>
 

@@ -9,6 +9,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/simulate/modal_pluck.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
 
