@@ -8,5 +8,5 @@
 #pragma once
 
 #if (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) || defined(_M_FP_FAST)
-#error "rosin: this header tells numbers from NaN, and -ffast-math (-ffinite-math-only, /fp:fast) takes that away: add -fno-finite-math-only"
+#error "rosin: NaN has to be told from numbers here, which -ffast-math (or /fp:fast) forbids: add -fno-finite-math-only"
 #endif
