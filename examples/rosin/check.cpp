@@ -96,13 +96,16 @@ struct tally {
   std::size_t errors = 0, warnings = 0;
 };
 
-tally count(const std::vector<rosin::take_check>& takes) {
+tally count(const rosin::rig_folder& folder, const std::vector<rosin::take_check>& takes) {
   tally out;
-  for (const auto& take : takes)
-    for (const auto& f : take.findings) {
+  const auto add = [&](const std::vector<rosin::finding>& findings) {
+    for (const auto& f : findings) {
       out.errors += f.level == rosin::severity::error ? 1 : 0;
       out.warnings += f.level == rosin::severity::warning ? 1 : 0;
     }
+  };
+  add(folder.doubts);
+  for (const auto& take : takes) add(take.findings);
   return out;
 }
 
@@ -115,6 +118,8 @@ void print_result(const check_options& given, const provenance& from, const rosi
              {"rig", folder.rig.title.value_or(folder.rig.file)},
              {"errors", found.errors},
              {"warnings", found.warnings}};
+    out["findings"] = json::array();
+    for (const auto& f : folder.doubts) out["findings"].push_back(tool::to_json(f));
     out["takes"] = json::array();
     for (const auto& take : takes) out["takes"].push_back(to_json(take, folder.rig));
     out["notes"] = folder.notes;
@@ -122,6 +127,7 @@ void print_result(const check_options& given, const provenance& from, const rosi
     return print(out);
   }
   for (const auto& take : takes) print_text(take, folder.rig);
+  for (const auto& line : doubts_of(folder)) std::cout << line << '\n';
   for (const auto& note : folder.notes) std::cout << "note: " << note << '\n';
   for (const auto& line : assumed) std::cout << "assumed: " << line << '\n';
   std::cout << found.errors << " error(s), " << found.warnings << " warning(s)\n";
@@ -159,7 +165,7 @@ exit_code run(const check_options& given, provenance from) {
     }
   }
   if (!unreadable.empty()) return fail(unreadable, given.json);
-  const tally found = count(takes);
+  const tally found = count(*folder, takes);
   print_result(given, from, *folder, takes, found);
   return found.errors > 0 || (given.strict && found.warnings > 0) ? exit_code::finding : exit_code::ok;
 }
@@ -174,9 +180,9 @@ void add_check(CLI::App& app, exit_code& result) {
   add_json_option(*command, given->json);
   command->footer(
       "Reads every take and looks for clipping, lost samples, silence, offset, noise, mains hum, swapped or inverted\n"
-      "channels, a wrong sample rate or pitch, and plucks that do not ring. Each finding names file, channel and time,\n"
-      "and says what to do. Defaults that a calculation would use are listed too, and what is being recorded or was left\n"
-      "by a recording that was killed.\n"
+      "channels, a wrong sample rate or pitch, plucks that do not ring, and values off by a power of ten. Each finding\n"
+      "names file, channel and time, and says what to do. Defaults that a calculation would use are listed too, and what\n"
+      "is being recorded or was left by a recording that was killed.\n"
       "Exit status: 0 nothing wrong, 1 errors were found (with --strict warnings, too), 2 nothing could be read.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }

@@ -88,9 +88,11 @@ exit_code run(const options& given, provenance from) {
     if (const auto why = cannot_draw()) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
-  const auto found = diagnosis_of(folder->rig, from, given);
-  if (!found) return fail(found.error(), as_json);
-  auto done = exit_code::ok;
+  auto found = diagnosis_of(folder->rig, from, given);
+  const auto doubts = doubts_of(*folder);
+  if (!found) return fail(failed(found.error(), doubts).message, as_json);
+  found->warnings.insert(found->warnings.begin(), doubts.begin(), doubts.end());
+  auto done = rosin::has_error(folder->doubts) ? exit_code::finding : exit_code::ok;
   if (!given.json_file.empty())
     if (const auto why = save_json(given.json_file, to_json(*found, from), given.force)) done = fail(why->message);
   for (const auto& line : found->warnings) std::cerr << "rosin: warning: " << line << '\n';
@@ -135,7 +137,8 @@ void add_diagnose(CLI::App& app, exit_code& result) {
       "alone and together, and judged on takes that were not fitted. Then the strokes are reconstructed with what was found,\n"
       "and tension and contact examined. A rig without two force channels is judged by its partials. Verdicts: no-mismatch, "
       "explained, unexplained.\n"
-      "Exit status: 0 done, 1 done but figures are missing, 2 nothing could be done, or a file not be written.");
+      "Exit status: 0 done, 1 done but values of the rig file contradict one another or figures are missing, 2 nothing\n"
+      "could be done, or a file not be written.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

@@ -77,7 +77,11 @@ exit_code outcome_of(bool incomplete, bool warnings, const fit_options& given) {
 
 /// Whatever the kind of calibration, where it goes.
 template <class Calibration, class Print>
-exit_code deliver(const Calibration& c, const fit_options& given, const provenance& from, Print print_it) {
+exit_code deliver(Calibration& c, const rosin::rig_folder& folder, const fit_options& given, const provenance& from,
+                  Print print_it) {
+  const auto doubts = doubts_of(folder);
+  c.warnings.insert(c.warnings.begin(), doubts.begin(), doubts.end());
+  c.incomplete = c.incomplete || rosin::has_error(folder.doubts);
   exit_code done = outcome_of(c.incomplete, !c.warnings.empty(), given);
   if (!given.json_file.empty())
     if (const auto why = save_json(given.json_file, to_json(c, from), given.force)) done = worse(done, fail(why->message));
@@ -90,13 +94,14 @@ exit_code deliver(const Calibration& c, const fit_options& given, const provenan
 }
 
 /// From single channels; `instead` says why, where both ends have a force transducer and nobody asked for it.
-exit_code fit_pickups(const fit_options& given, const rosin::rig& rig, provenance from, const std::string& instead) {
+exit_code fit_pickups(const fit_options& given, const rosin::rig_folder& folder, provenance from, const std::string& instead) {
   const bool as_json = given.json_file == "-";
+  const rosin::rig& rig = folder.rig;
   if (!given.header.path.empty()) return fail(rig.file + ": --emit-header: force transducers at both ends are needed", as_json);
   auto fitted = calibrate_pickups(rig, from);
-  if (!fitted) return fail(fitted.error(), as_json);
+  if (!fitted) return fail(failed(fitted.error(), doubts_of(folder)).message, as_json);
   if (!instead.empty()) fitted->warnings.push_back(instead), fitted->incomplete = true;
-  return deliver(*fitted, given, from, [](const pickup_calibration& c) {
+  return deliver(*fitted, folder, given, from, [](const pickup_calibration& c) {
     std::cout << c.title << ": pitch, stiffness and loss from single channels\n";
     std::vector<calibration_row> rows;
     for (const auto& one : c.results)
@@ -115,14 +120,14 @@ exit_code run(const fit_options& given, provenance from) {
     if (const auto why = cannot_draw()) return fail(why->message, as_json);
   const auto folder = open_rig(given.rig, from);
   if (!folder) return fail(folder.error(), as_json);
-  if (given.pickup || !folder->rig.has_both_forces()) return fit_pickups(given, folder->rig, from, {});
-  const auto fitted = calibrate(folder->rig, from, !given.report.empty());
+  if (given.pickup || !folder->rig.has_both_forces()) return fit_pickups(given, *folder, from, {});
+  auto fitted = calibrate(folder->rig, from, !given.report.empty());
   if (!fitted && given.header.path.empty() && all_begin_late(folder->rig, from))
-    return fit_pickups(given, folder->rig, from,
+    return fit_pickups(given, *folder, from,
                        "no pluck holds its release: gains, polarity, order of the channels, place of the contact and the wire's "
                        "force cannot be known; pitch, stiffness and loss are from what rings in each channel");
-  if (!fitted) return fail(fitted.error(), as_json);
-  exit_code done = deliver(*fitted, given, from, print_fit);
+  if (!fitted) return fail(failed(fitted.error(), doubts_of(*folder)).message, as_json);
+  exit_code done = deliver(*fitted, *folder, given, from, print_fit);
   if (given.header.path.empty()) return done;
   std::vector<std::string> said;
   if (any_end_moves(folder->rig))
@@ -156,9 +161,8 @@ void add_fit(CLI::App& app, exit_code& result) {
       "one standard deviation, random and systematic apart. Plucks marked hold_out are predicted, not fitted.\n"
       "Without force transducers at both ends, or where no pluck holds its release: partials, inharmonicity, bending\n"
       "stiffness and loss from each channel.\n"
-      "Exit status: 0 done, 1 done but plucks had to be left out, the fit did not settle or figures are missing, 2 nothing could "
-      "be\n"
-      "fitted, or a file not be written.");
+      "Exit status: 0 done, 1 done but plucks had to be left out, the fit did not settle, values of the rig file contradict\n"
+      "one another or figures are missing, 2 nothing could be fitted, or a file not be written.");
   command->callback([given, command, &result] { result = run(*given, provenance{*command}); });
 }
 

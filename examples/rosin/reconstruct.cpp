@@ -112,10 +112,10 @@ exit_code run(const reconstruct_options& given, provenance from) {
   const auto take = bowed_take(rig, given.take);
   if (!take) return fail(take.error(), as_json);
   const auto read = read_sound_take(rig, **take, from);
-  if (!read) return fail(read.error(), as_json);
+  if (!read) return fail(failed(read.error(), doubts_of(*folder)).message, as_json);
   std::optional<rig_calibration> fitted;
   const auto calibration = calibration_of(given, rig, from, fitted);
-  if (!calibration) return fail(calibration.error(), as_json);
+  if (!calibration) return fail(failed(calibration.error(), doubts_of(*folder)).message, as_json);
   take_options how = given.how;
   if (!given.model.empty()) {
     auto model = read_model(given.model, rig, from);
@@ -123,8 +123,9 @@ exit_code run(const reconstruct_options& given, provenance from) {
     how.model = *std::move(model), how.fine_tune = false;
   }
   auto made = reconstruct_take(rig, **take, *read, *calibration, how);
-  if (!made) return fail(made.error(), as_json);
-  std::vector<std::string> warnings = folder->notes, assumed = fitted ? fitted->assumed : rosin::values_of(rig).assumed;
+  if (!made) return fail(failed(made.error(), doubts_of(*folder)).message, as_json);
+  std::vector<std::string> warnings = doubts_of(*folder), assumed = fitted ? fitted->assumed : rosin::values_of(rig).assumed;
+  warnings.insert(warnings.end(), folder->notes.begin(), folder->notes.end());
   for (const auto& f : read->check.findings)
     if (f.level != rosin::severity::note) warnings.push_back(warning_of(rig, f));
   if (how.model && !how.model->doubt.empty()) warnings.push_back(how.model->file + ": " + how.model->doubt);
@@ -133,7 +134,8 @@ exit_code run(const reconstruct_options& given, provenance from) {
   made->warnings.insert(made->warnings.begin(), warnings.begin(), warnings.end());
   made->assumed.insert(made->assumed.begin(), assumed.begin(), assumed.end());
   if (how.model) made->assumed.push_back(said_of(*how.model));
-  const bool found = (fitted && fitted->incomplete) || (given.strict && !made->warnings.empty());
+  const bool found = (fitted && fitted->incomplete) || made->contradicts_itself || rosin::has_error(folder->doubts) ||
+                     (given.strict && !made->warnings.empty());
   return worse(found ? exit_code::finding : exit_code::ok, deliver(given, *made, fitted, from));
 }
 
@@ -181,9 +183,9 @@ void add_reconstruct(CLI::App& app, exit_code& result) {
       "Calibrates from the plucks of the rig, tunes delays and relative gain to the take within what the plucks allow,\n"
       "and reconstructs the whole take, transient included. What cannot be known (the first and last transit times) is\n"
       "left empty. Standard deviations are random; those of the common scale stand in columns of their own.\n"
-      "Exit status: 0 done, 1 done but plucks had to be left out, the fit did not settle or figures are missing, 2 nothing could "
-      "be\n"
-      "done, or a file not be written.");
+      "Exit status: 0 done, 1 done but plucks had to be left out, the fit did not settle, figures are missing, or something\n"
+      "contradicts itself (no slip, friction that the normal force does not allow, a level that drifts, values off by a power\n"
+      "of ten), 2 nothing could be done, or a file not be written.");
   command->callback([given, command, &result] {
     given->how.fine_tune = !given->no_fine_tune;
     result = run(*given, provenance{*command});

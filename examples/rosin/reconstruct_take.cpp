@@ -238,6 +238,27 @@ void find_slips(take_reconstruction& r) {
   }
 }
 
+/// Where the rod moves and the bow is on: what cannot be so.
+void doubt(const rosin::take& take, take_reconstruction& r) {
+  std::size_t begin = r.known.begin;
+  const std::size_t end = std::min(r.known.end, r.lifted.value_or(r.known.end));
+  if (r.rod_m_s.empty()) return;
+  while (begin < end && !(std::abs(r.rod_m_s[begin]) > 0)) ++begin;
+  std::vector<double> surface(r.velocity_m_s.begin() + static_cast<std::ptrdiff_t>(begin),
+                              r.velocity_m_s.begin() + static_cast<std::ptrdiff_t>(end));
+  for (std::size_t i = begin; i < end && !r.torsion_m_s.empty(); ++i)
+    if (std::isfinite(r.torsion_m_s[i])) surface[i - begin] += r.torsion_m_s[i];
+  const double period_s = r.period_s > 0 ? r.period_s : 1 / r.calibration.fundamental_Hz;
+  const auto of = [&](const std::vector<double>& x) { return std::span(x).subspan(begin, end - begin); };
+  const auto [slowest, fastest] = std::minmax_element(r.rod_m_s.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                      r.rod_m_s.begin() + static_cast<std::ptrdiff_t>(end));
+  const bool steady = begin < end && take.normal_force_profile_N.empty() && !r.normal_from.starts_with("channel") &&
+                      *fastest - *slowest < 0.1 * std::abs(*fastest);
+  const rosin::stroke_view view{of(r.force_N),        surface,        of(r.rod_m_s), r.normal_force_N,
+                                period_s * r.rate_Hz, r.slips.size(), !r.ac_coupled, steady};
+  for (const auto& d : rosin::doubts_of_stroke(view)) r.warnings.push_back(d.what), r.contradicts_itself = true;
+}
+
 void judge(const rosin::rig& rig, take_reconstruction& r) {
   const double one_way = r.before.at.delay_s[0] + r.before.at.delay_s[1];
   if (const auto& t = r.result.tuning; t && t->sigmas > 5) {
@@ -323,6 +344,7 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   add_comparisons(rig, take, read, r);
   estimate_level(rig, r);
   judge(rig, r);
+  doubt(take, r);
   return r;
 }
 

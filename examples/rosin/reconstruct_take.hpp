@@ -11,6 +11,7 @@
 #include <rosin/calibrate/free_decay.hpp>
 #include <rosin/condition/ac_coupling.hpp>
 #include <rosin/reconstruct/dc_level.hpp>
+#include <rosin/reconstruct/stroke_doubts.hpp>
 #include <rosin/torsion/torsion_response.hpp>
 
 namespace tool {
@@ -56,6 +57,7 @@ struct take_reconstruction {
   std::vector<channel_comparison> comparisons;
   std::vector<double> magnet_m_s;  ///< of a channel that measures the velocity at the contact, scaled to the result
   std::vector<std::string> assumed, warnings;
+  bool contradicts_itself = false;  ///< some of the warnings say what cannot be so
 
   [[nodiscard]] double time_s(std::size_t i) const { return static_cast<double>(i) / rate_Hz; }
   [[nodiscard]] double slips_per_period() const;

@@ -29,6 +29,12 @@ rosin::outcome<rosin::rig_folder> open_rig(const std::string& path, provenance& 
   return folder;
 }
 
+std::vector<std::string> doubts_of(const rosin::rig_folder& folder) {
+  std::vector<std::string> out;
+  for (const auto& f : folder.doubts) out.push_back(warning_of(folder.rig, f));
+  return out;
+}
+
 rosin::outcome<checked_take> read_take(const rosin::rig& rig, const rosin::take& take, provenance& from) {
   auto signals = rosin::load_take(rig, take, table_formats());
   if (!signals) return rosin::failure{signals.error()};
@@ -69,6 +75,7 @@ namespace {
 /// Where it is: file, take, channel, time.
 std::string place_of(const rosin::rig& rig, const rosin::finding& finding) {
   const rosin::take* take = rig.find_take(finding.take);
+  if (finding.take.empty()) return rig.file + ": ";
   std::string out = take != nullptr ? take->file + ": " : std::string{};
   out += "take " + finding.take;
   if (take != nullptr) out += " (" + rig.file + ":" + std::to_string(take->line) + ")";
@@ -92,7 +99,7 @@ std::string warning_of(const rosin::rig& rig, const rosin::finding& finding) {
 json to_json(const rosin::finding& finding) {
   return {{"severity", name_of(finding.level)},
           {"kind", finding.kind},
-          {"take", finding.take},
+          {"take", finding.take.empty() ? json(nullptr) : json(finding.take)},
           {"channel", finding.channel.empty() ? json(nullptr) : json(finding.channel)},
           {"time_s", {finding.start_s, finding.end_s}},
           {"what", finding.what},

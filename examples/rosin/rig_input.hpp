@@ -22,6 +22,9 @@ void add_hdf5_tables(rosin::table_formats& to);
 /// The rig with the headers of all its recordings checked; the rig file itself joins the inputs.
 [[nodiscard]] rosin::outcome<rosin::rig_folder> open_rig(const std::string& path, provenance& from);
 
+/// What contradicts itself in the rig file, a sentence each.
+[[nodiscard]] std::vector<std::string> doubts_of(const rosin::rig_folder& folder);
+
 struct checked_take {
   rosin::take_signals signals;
   rosin::take_check check;

@@ -220,6 +220,7 @@ rosin::outcome<simulation_plan> plan_simulation(const rosin::rig& rig, std::opti
   auto ends = simulated_ends(rig, plan.rig.string.impedance_Ns_m(), plan.notes);
   if (!ends) return rosin::failure{ends.error()};
   plan.burden.string.ends = *std::move(ends);
+  for (const auto& f : rosin::check_magnitudes(rig)) plan.notes.push_back(f.what + "; " + f.advice);
   auto friction = choose_friction(rig, plan.assumed, plan.notes);
   if (!friction) return rosin::failure{friction.error()};
   plan.friction = *std::move(friction);

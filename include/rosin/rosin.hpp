@@ -15,6 +15,7 @@
 
 #include <rosin/version.hpp>
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
@@ -39,6 +40,7 @@
 #include <rosin/acquire/effect_names.hpp>
 #include <rosin/acquire/finding.hpp>
 #include <rosin/acquire/hum.hpp>
+#include <rosin/acquire/magnitudes.hpp>
 #include <rosin/acquire/pluck_checks.hpp>
 #include <rosin/acquire/recording.hpp>
 #include <rosin/acquire/release.hpp>
@@ -116,6 +118,7 @@
 #include <rosin/reconstruct/sensitivity.hpp>
 #include <rosin/reconstruct/streaming_design.hpp>
 #include <rosin/reconstruct/streaming_reconstructor.hpp>
+#include <rosin/reconstruct/stroke_doubts.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
 
 #include <rosin/torsion/contact_signal.hpp>
@@ -254,30 +257,33 @@
 #include <rosin/diagnose/width_and_drift.hpp>
 #include <rosin/diagnose/wire_effects.hpp>
 
-#include <rosin/hardware/byte_link.hpp>
 #include <rosin/hardware/capture.hpp>
 #include <rosin/hardware/cobs.hpp>
 #include <rosin/hardware/crc32.hpp>
-#include <rosin/hardware/csv_sink.hpp>
 #include <rosin/hardware/deadline.hpp>
-#include <rosin/hardware/durable_text.hpp>
-#include <rosin/hardware/file_lock.hpp>
 #include <rosin/hardware/frame_packet.hpp>
 #include <rosin/hardware/frame_ring.hpp>
 #include <rosin/hardware/frames.hpp>
 #include <rosin/hardware/grbl_lines.hpp>
 #include <rosin/hardware/grbl_protocol.hpp>
 #include <rosin/hardware/grbl_simulator.hpp>
-#include <rosin/hardware/grbl_stage.hpp>
 #include <rosin/hardware/level_meter.hpp>
 #include <rosin/hardware/level_trigger.hpp>
 #include <rosin/hardware/line_witness.hpp>
 #include <rosin/hardware/paced_source.hpp>
 #include <rosin/hardware/packet_decoder.hpp>
+#include <rosin/hardware/wav_header.hpp>
+
+#if __has_include(<termios.h>)  // POSIX: descriptors and serial lines
+#include <rosin/hardware/byte_link.hpp>
+#include <rosin/hardware/csv_sink.hpp>
+#include <rosin/hardware/durable_text.hpp>
+#include <rosin/hardware/file_lock.hpp>
+#include <rosin/hardware/grbl_stage.hpp>
 #include <rosin/hardware/pseudo_terminal.hpp>
 #include <rosin/hardware/serial_source.hpp>
 #include <rosin/hardware/take_file.hpp>
-#include <rosin/hardware/wav_header.hpp>
+#endif
 
 #include <rosin/report/csv.hpp>
 #include <rosin/report/input_file.hpp>

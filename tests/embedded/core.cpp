@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/core/pipeline.hpp>
 #include <rosin/core/stage.hpp>

@@ -44,6 +44,18 @@ expect 0 check hum
 says "warning: mains hum of 50 Hz, 0.02 N" "0 error(s), 3 warning(s)"
 expect 1 check hum --strict
 
+# values that are off by a power of ten: said by name, with the likely value
+make_rig kilo
+sed -i 's/^fundamental_Hz = 330/fundamental_Hz = 0.33/' kilo/rig.toml
+expect 1 check kilo
+says "kilo/rig.toml: error: string.fundamental_Hz is 0.33, and 330 would agree with all the rest" "error: rings at 33" "fundamental_Hz is 0.33"
+expect 1 check kilo --json
+says '"kind": "power-of-ten"' '"take": null'
+cp -r sound milli
+sed -i 's/^length_m = 0.65/length_m = 650/; s/^force_N = 0.5/force_N = 5/' milli/rig.toml
+expect 1 check milli
+says "string.length_m is 650, and 0.65 would agree" "off by a power of ten; force_N = 0.5"
+
 # what cannot be read: nothing is calculated, and all of it is said at once
 make_rig broken
 head -c 20000 sound/pluck-1.wav >broken/pluck-1.wav

@@ -1,6 +1,7 @@
 # rosin reconstruct: the contact force that the recordings were made from, the format of what is written, and what is refused.
 . "$ROSIN_SOURCE/tests/tool/common.sh"
 perl "$ROSIN_SOURCE/tests/tool/closed_form_rig.pl" rig
+sed -i 's/^speed_m_s = 0.05/speed_m_s = 0.3/' rig/rig.toml  # nobody bowed: a rod that the string might have stuck to
 
 # differs FILE: Delta of force_N against the truth, after one scale factor, and that factor; mean taken out.
 differs() {
@@ -63,7 +64,7 @@ grep -q '"sense": "none"' s.json || { echo "FAILED: no loops in the summary"; fa
 perl -e '
   sub rows { open my $f, "<", $_[0] or die; my (@name, @out);
     while (<$f>) { next if /^#/; chomp; my @c = split /,/, $_, -1; if (!@name) { @name = @c } else { my %r; @r{@name} = @c; push @out, \%r } } @out }
-  my @take = rows("s.csv"); my ($bad, $n, $rod, $rate) = (0, 0, 0.05, 48000);
+  my @take = rows("s.csv"); my ($bad, $n, $rod, $rate) = (0, 0, 0.3, 48000);
   my $near = sub { my ($what, $a, $b, $scale) = @_; if (abs($a - $b) > 1e-4 * $scale) { print "FAILED: $what $a is not $b\n"; $bad = 1 } };
   for my $s (rows("slips.csv")) {
     my ($i, $j) = map { int($s->{$_} * $rate + 0.5) } "begin_s", "end_s";
@@ -99,6 +100,7 @@ expect 0 reconstruct rig --take bow-1 --out a.csv --force --calibration fit.json
 
 # AC coupled: the mean is unknown, and is estimated aloud
 perl "$ROSIN_SOURCE/tests/tool/closed_form_rig.pl" ac ac
+sed -i 's/^speed_m_s = 0.05/speed_m_s = 0.3/' ac/rig.toml
 expect 0 reconstruct ac --take bow-1 --out ac.csv
 says "AC coupled sensors; estimated as"
 read -r delta_ac _ < <(differs ac.csv)
@@ -153,6 +155,13 @@ perl -e 'my $d = "\0" x 400; open my $f, ">:raw", "short/bow-1.wav"; print $f "R
 expect 2 reconstruct short --take bow-1
 sed '/^near/d; s/^far/coil/; s/gain_tolerance.*/quantity = "string-velocity", position = 0.2 }/; s/index = 1/index = 0/' rig/rig.toml >short/rig.toml
 expect 2 reconstruct short --take bow-1
+
+# what cannot be so: a speed in mm/s, a normal force in the wrong decade; the table is written all the same
+cp -r rig wrong
+sed -i 's/^speed_m_s = 0.3/speed_m_s = 300/' wrong/rig.toml
+expect 1 reconstruct wrong --take bow-1 --calibration fit.json --out wrong.csv
+says "no slip was found" "with a speed = 0.3 it would be" "take \"bow-1\".speed_m_s is"
+expect 0 validate wrong.csv
 
 if command -v gnuplot >/dev/null; then
   expect 0 reconstruct rig --take bow-1 --report page.html

@@ -12,6 +12,8 @@
 
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -50,6 +52,35 @@ template <class = void>
   }
   out.pitch_Hz = found->pitch_Hz;
   return found->score >= 0.3 && !other_string;
+}
+
+/// A string that rings at a power of ten of the declared pitch, and not at it: nothing else can be judged then. True if so.
+template <class = void>
+[[nodiscard]] bool check_pitch_unit(take_check& out, const pluck_view& view) {
+  const double rate = view.signals->sample_rate_Hz;
+  for (const auto& s : view.signals->signals) {
+    if (s.sensor.quantity == quantity::normal_force || s.sensor.quantity == quantity::bow_speed || s.values.size() < 64) continue;
+    std::size_t release = 1;
+    for (std::size_t i = 1; i + 32 < s.values.size(); ++i)
+      if (std::abs(s.values[i] - s.values[i - 1]) > std::abs(s.values[release] - s.values[release - 1])) release = i;
+    const std::span<const double> tail{s.values.data() + release, std::min<std::size_t>(s.values.size() - release, 1 << 17)};
+    const auto declared = find_ringing(tail, rate, view.fundamental_Hz, view.inharmonicity);
+    if (declared && declared->at_declared >= 0.3) return false;
+    std::optional<ringing> best;
+    for (const double factor : {1e-6, 1e-3, 1e-2, 1e-1, 1e1, 1e2, 1e3, 1e6}) {
+      const double pitch_Hz = factor * view.fundamental_Hz;
+      if (pitch_Hz < 5 || pitch_Hz > 0.2 * rate) continue;
+      const auto found = find_ringing(tail, rate, pitch_Hz, std::min(view.inharmonicity, 1e-3));
+      if (found && found->score > (best ? best->score : 0.6) && std::abs(found->pitch_Hz / pitch_Hz - 1) < 0.05) best = found;
+    }
+    if (!best) continue;
+    out.pitch_Hz = best->pitch_Hz;
+    out.add(severity::error, "power-of-ten", s.sensor.name, view.signals->time_s(release), out.duration_s,
+            "rings at " + figure(best->pitch_Hz, "%.4g") + " Hz, fundamental_Hz is " + figure(view.fundamental_Hz, "%.4g"),
+            "check the unit and the digits of fundamental_Hz; nothing else of this take was judged");
+    return true;
+  }
+  return false;
 }
 
 /// What is recorded of the ringing, from `start` on. True if there is anything to look at.
@@ -150,6 +181,7 @@ template <class = void>
   const detail::pluck_view view{&r, &t, &signals, r.string.fundamental_Hz, inharmonicity};
   if (t.kind == take_kind::quiet) detail::check_quiet(out, signals, r.string.fundamental_Hz);
   else if (t.kind == take_kind::bow) detail::check_bow(out, r, t, signals);
+  else if (detail::check_pitch_unit(out, view)) return out;
   else if (r.has_both_forces()) detail::check_force_pluck(out, view);
   else detail::check_other_pluck(out, view);
   return out;
@@ -157,3 +189,5 @@ template <class = void>
 ROSIN_INSTANTIATE(take_check check_take(const rig&, const take&, const take_signals&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

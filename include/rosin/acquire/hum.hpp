@@ -12,6 +12,8 @@
 #include <array>
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct hum_estimate {
@@ -74,3 +76,5 @@ namespace detail {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

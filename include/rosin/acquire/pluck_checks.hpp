@@ -16,6 +16,8 @@
 #include <rosin/acquire/ringing.hpp>
 #include <rosin/acquire/signal_checks.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin::detail {
 
 /// What is known of a pluck when the checks begin.
@@ -37,6 +39,16 @@ struct pluck_steps {
   double sum = 0;
   for (std::size_t i = 0; i < end; ++i) sum += x[i];
   return sum / static_cast<double>(end);
+}
+
+/// "; a force_N of ... or a scale of ... would agree", where a power of ten does.
+[[nodiscard]] inline std::string likely_scale(const pluck_view& view, const std::string& channel, double height) {
+  const double force = view.what->force_N.value_or(0), scale = view.from->channel(channel)->per_full_scale.value_or(0);
+  if (!(force > 0 && height != 0)) return {};
+  const double off = std::log10(std::abs(height) / force), power = std::round(off);
+  if (power == 0 || std::abs(off - power) > 0.12) return {};
+  return ": off by a power of ten; force_N = " + figure(force * std::pow(10.0, power)) +
+         ", or newtons_per_full_scale = " + figure(scale / std::pow(10.0, power)) + " of this channel, would agree";
 }
 
 /// The step against the wire's force, both tolerances allowed for.
@@ -105,7 +117,8 @@ inline void check_step(take_check& out, const pluck_view& view, const std::strin
             "turn the polarity of this channel round (both: the take was plucked against the way the bow moves)");
   if (scale_is_wrong(view, channel, step))
     out.add(severity::warning, "wrong-scale", channel, t, t,
-            "the release steps by " + figure(std::abs(step.height)) + " N, force_N is " + figure(force),
+            "the release steps by " + figure(std::abs(step.height)) + " N, force_N is " + figure(force) +
+                likely_scale(view, channel, step.height),
             "check newtons_per_full_scale, force_N and whether the wire broke at once");
 }
 
@@ -176,10 +189,13 @@ inline bool check_steps(take_check& out, const pluck_view& view, pluck_steps& st
     }
     all = false;
     out.add(severity::error, "no-release", name, 0, out.duration_s,
-            "no release: the largest step is " + figure(found ? std::abs(found->height) : 0) + " N, force_N is " + figure(force),
+            "no release: the largest step is " + figure(found ? std::abs(found->height) : 0) + " N, force_N is " + figure(force) +
+                (found ? likely_scale(view, name, found->height) : std::string{}),
             "check that the take holds the pluck, and the channel's scale");
   }
   return all;
 }
 
 }  // namespace rosin::detail
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What a channel measures; its SI unit is N, m/s, m, Pa, N, m/s. An unused channel is recorded but holds nothing of use.
@@ -188,3 +190,5 @@ struct rig {
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

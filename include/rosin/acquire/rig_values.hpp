@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A value and its standard deviation.
@@ -150,3 +152,5 @@ inline void note_model(const rig& r, rig_values& out) {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

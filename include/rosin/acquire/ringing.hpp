@@ -8,11 +8,14 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/math/spectrum_line.hpp>
 
 #include <limits>
 #include <optional>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -114,3 +117,5 @@ ROSIN_INSTANTIATE(std::optional<ringing> find_ringing(std::span<const double>, d
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -13,6 +13,8 @@
 #include <rosin/acquire/stroke_motion.hpp>
 #include <rosin/core/number_text.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Figures of one channel, in the sensor's unit.
@@ -156,3 +158,5 @@ inline void report_hum(take_check& out, channel_check& c, const take_signals& fr
 
 }  // namespace detail
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

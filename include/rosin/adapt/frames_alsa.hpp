@@ -16,6 +16,8 @@
 #include <memory>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -157,3 +159,5 @@ private:
 static_assert(FrameSource<alsa_source>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,8 @@
 #include <thread>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A FrameSource.
@@ -129,3 +131,5 @@ private:
 static_assert(FrameSource<jack_source>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 #include <cerrno>
 #include <sstream>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -115,3 +117,5 @@ private:
 static_assert(FrameSource<sndfile_source>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 class problem_log {
@@ -93,3 +95,5 @@ template <class Names>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -20,6 +20,8 @@
 #include <string>
 #include <string_view>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct riff_layout {
@@ -141,3 +143,5 @@ inline void note_data(riff_layout& out, const riff_cursor& cursor, std::uint64_t
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

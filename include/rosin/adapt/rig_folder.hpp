@@ -16,6 +16,7 @@ struct rig_folder {
   rosin::rig rig;
   std::vector<audio_format> formats;  ///< of each take
   std::vector<std::string> notes;     ///< what is odd but no reason to stop
+  std::vector<finding> doubts;        ///< values of the rig file that contradict one another
 };
 
 namespace detail {
@@ -88,7 +89,8 @@ inline void note_untold_lengths(rig_folder& folder) {
                                                          const table_formats& formats = plain_table_formats()) {
   auto loaded = load_rig(path);
   if (!loaded) return failure{loaded.error()};
-  rig_folder out{*std::move(loaded), {}, {}};
+  rig_folder out{*std::move(loaded), {}, {}, {}};
+  out.doubts = check_magnitudes(out.rig);
   problem_log log{out.rig.file};
   for (const take& t : out.rig.takes) {
     const auto format = detail::read_format(out.rig, t, formats);
@@ -96,7 +98,10 @@ inline void note_untold_lengths(rig_folder& folder) {
     out.formats.push_back(format ? *format : audio_format{});
     if (format) detail::check_format(out, t, *format, log);
   }
-  if (!log.empty()) return log.to_failure();
+  if (!log.empty()) {
+    for (const finding& f : out.doubts) log.add(0, "", f.what);
+    return log.to_failure();
+  }
   detail::note_unnamed_channels(out);
   detail::note_shared_files(out);
   detail::note_untold_lengths(out);

@@ -10,6 +10,8 @@
 #include <rosin/acquire/rig.hpp>
 #include <rosin/adapt/toml_fields.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin::detail {
 
 inline string_section read_string(toml_fields fields) {
@@ -122,3 +124,5 @@ inline simulate_section read_simulate(toml_fields fields) {
 }
 
 }  // namespace rosin::detail
+
+#include <rosin/core/macros_back.ipp>

@@ -8,6 +8,8 @@
 #include <rosin/acquire/rig.hpp>
 #include <rosin/adapt/toml_fields.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin::detail {
 
 /// The key that calibrates a channel, in the unit of its quantity; empty for those that have none.
@@ -134,3 +136,5 @@ inline std::optional<termination> read_termination(toml_fields& fields, std::str
 }
 
 }  // namespace rosin::detail
+
+#include <rosin/core/macros_back.ipp>

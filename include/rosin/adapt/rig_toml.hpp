@@ -9,13 +9,17 @@
 //
 #pragma once
 
+#include <rosin/acquire/magnitudes.hpp>
 #include <rosin/adapt/rig_sections.hpp>
 #include <rosin/adapt/rig_sensors.hpp>
 #include <rosin/adapt/rig_takes.hpp>
 #include <rosin/adapt/toml_guard.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/report/csv.hpp>
 
 #include <filesystem>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -56,10 +60,11 @@ inline void check_string(toml_fields fields, const rig& r, bool sound) {
   const double expected = *s.tension_N / (2 * *s.length_m * s.fundamental_Hz);
   const double limit =
       s.tension_tolerance.value_or(0.02) + s.fundamental_tolerance.value_or(0.003) + s.impedance_tolerance.value_or(0.01);
-  if (std::abs(*s.impedance_Ns_m / expected - 1) > limit)
-    fields.refuse("impedance_Ns_m", "is " + value_range::number(*s.impedance_Ns_m) +
-                                        ", but tension / (2 length fundamental) is " + value_range::number(expected) +
-                                        "; one of the four is wrong");
+  if (std::abs(*s.impedance_Ns_m / expected - 1) <= limit) return;
+  std::string which = "; one of the four is wrong";
+  for (const auto& slip : find_magnitude_slips(r)) which += "; " + likely_text(slip);
+  fields.refuse("impedance_Ns_m", "is " + value_range::number(*s.impedance_Ns_m) + ", but tension / (2 length fundamental) is " +
+                                      value_range::number(expected) + which);
 }
 
 inline void read_contact(toml_fields fields, rig& r) {
@@ -185,3 +190,5 @@ enum class take_files { required, to_be_made };
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

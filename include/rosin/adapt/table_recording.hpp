@@ -13,7 +13,6 @@
 #include <rosin/adapt/table_text.hpp>
 #include <rosin/core/number_text.hpp>
 
-#include <cstdio>
 
 namespace rosin {
 

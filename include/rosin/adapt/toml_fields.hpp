@@ -8,6 +8,7 @@
 #pragma once
 
 #include <rosin/adapt/problem_log.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/number_text.hpp>
 
 #include <toml++/toml.h>

@@ -18,6 +18,8 @@
 #include <fstream>
 #include <memory>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin::detail {
 
 struct close_sndfile {
@@ -172,3 +174,5 @@ private:
 }
 
 }  // namespace rosin::detail
+
+#include <rosin/core/macros_back.ipp>

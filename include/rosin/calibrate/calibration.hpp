@@ -18,6 +18,8 @@
 #include <array>
 #include <cmath>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What the waveform of a reconstruction depends on. Order of all vectors and matrices that bear this name.
@@ -115,3 +117,5 @@ template <class Real = double>
 ROSIN_INSTANTIATE(calibration calibration_from(const pluck_fit_result&, double, double, double, std::array<double, 2>))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

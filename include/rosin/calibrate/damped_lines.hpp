@@ -26,6 +26,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One damped line seen by two channels. pole: 1/s; residues: in the unit of the signal.
@@ -208,3 +210,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -19,6 +19,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The line along which spectra are taken, and its points.
@@ -60,3 +62,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::vector<std::complex<double>> damped_spectrum(const damped_line_of_frequencies&, std::span<const double>))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -15,6 +15,8 @@
 #include <rosin/calibrate/end_descent.hpp>
 #include <rosin/core/instantiate.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct end_options {
@@ -219,3 +221,5 @@ ROSIN_INSTANTIATE(outcome<end_fit_result> fit_ends(const std::vector<pluck_take>
                                                    const end_options&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -25,6 +25,8 @@
 #include <memory>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Relative admittance of an end that is known, at any s with a real part >= 0; empty: rigid.
@@ -277,3 +279,5 @@ end_problem::rows end_problem::at(const end_model& m, const Eigen::VectorXd& v, 
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 #include <rosin/calibrate/end_problem.hpp>
 #include <rosin/core/instantiate.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct mode_candidate {
@@ -96,3 +98,5 @@ ROSIN_INSTANTIATE(std::vector<mode_candidate> search_modes(const end_problem&, c
                                                            const std::array<bool, 2>&, double, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

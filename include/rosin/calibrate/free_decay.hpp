@@ -25,6 +25,8 @@
 #include <string>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The first sample after which a contact's force stays below a twentieth of its strongest rms, both over a period; none where it
@@ -127,3 +129,5 @@ ROSIN_INSTANTIATE(outcome<free_decay> fit_free_decay(const std::array<std::span<
                                                      const free_decay_options&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -26,6 +26,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The window of a baseband; analytic, so that it has a value for damped lines too.
@@ -99,3 +101,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

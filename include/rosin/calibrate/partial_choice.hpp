@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/calibrate/partial_line.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/math/fft.hpp>
 
@@ -22,6 +23,8 @@
 #include <cstddef>
 #include <span>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -148,3 +151,5 @@ line_fit one_or_two_lines(std::span<const std::complex<double>> z, double rate_H
 ROSIN_INSTANTIATE(line_fit one_or_two_lines(std::span<const std::complex<double>>, double, const line_fit&, double, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

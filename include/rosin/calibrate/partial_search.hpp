@@ -25,6 +25,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct found_partials {
@@ -172,3 +174,5 @@ template <class = void>
 ROSIN_INSTANTIATE(found_partials find_partials(std::span<const double>, double, double, double, int))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -23,6 +23,8 @@
 #include <optional>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct partial {
@@ -200,3 +202,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::optional<partial_track> track_partial(const baseband_bank&, int, double, double, double, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,7 @@
 #include <rosin/calibrate/pickup_glide.hpp>
 #include <rosin/calibrate/pickup_loss.hpp>
 #include <rosin/calibrate/pickup_pitch.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
@@ -31,6 +32,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -241,3 +244,5 @@ template <class = void>
 ROSIN_INSTANTIATE(outcome<pickup_fit> fit_pickup(std::span<const double>, double, double, const pickup_options&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

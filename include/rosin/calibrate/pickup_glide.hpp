@@ -19,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The pitch is sharp by relative * exp(-decay t), t from the first sample fitted.
@@ -152,3 +154,5 @@ void take_out_glide(std::vector<partial_track>& tracks, const pitch_glide& glide
 ROSIN_INSTANTIATE(void take_out_glide(std::vector<partial_track>&, const pitch_glide&, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <rosin/calibrate/pickup_regression.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/propagate/string_parameters.hpp>
 
@@ -25,6 +26,8 @@
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -155,3 +158,5 @@ template <class = void>
 ROSIN_INSTANTIATE(loss_estimate fit_loss(const std::vector<measured_decay>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -18,6 +18,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Frequency of a partial with its own standard deviation.
@@ -77,3 +79,5 @@ template <class = void>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

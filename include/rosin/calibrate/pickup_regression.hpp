@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/math/median.hpp>
 #include <rosin/math/robust_loss.hpp>
@@ -25,6 +26,8 @@
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -135,3 +138,5 @@ template <class Model>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

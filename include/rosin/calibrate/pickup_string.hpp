@@ -17,6 +17,8 @@
 #include <optional>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct measured_value {
@@ -101,3 +103,5 @@ inline std::optional<measured_value> combined(const std::vector<std::optional<me
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -23,6 +23,8 @@
 
 #include <string>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What a fit of plucks found. Order of parameters and covariance: pluck_layout.
@@ -217,3 +219,5 @@ ROSIN_INSTANTIATE(outcome<pluck_fit_result> fit_plucks(const std::vector<pluck_t
                                                        double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -23,6 +23,8 @@
 #include <string>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One recorded pluck: forces on the terminations in nominal newtons.
@@ -298,3 +300,5 @@ template <class Layout>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

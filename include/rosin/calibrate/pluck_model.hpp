@@ -35,6 +35,8 @@
 #include <numbers>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A string as its plucks reveal it.
@@ -94,3 +96,5 @@ struct ringing_string {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

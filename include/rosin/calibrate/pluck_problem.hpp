@@ -15,6 +15,8 @@
 
 #include <concepts>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Model of a set of plucks: which parameters there are, and the lines that a take consists of from `begin_s` on, before its
@@ -220,7 +222,8 @@ pluck_equations line_problem<Model>::linearise(const Eigen::VectorXd& v) const {
     const projection p = project(s, takes_[t].rate_Hz, now);
     for (std::size_t c = 0; c < 2; ++c) {
       const double sure = 1 / (noise_[c] * noise_[c]);
-      const Eigen::MatrixXd to = all[c](rows, Eigen::all), of_gram = to * gram, flat = p.onto_lines[c].transpose();
+      const Eigen::MatrixXd to = all[c](rows, Eigen::seqN(0, all[c].cols())), of_gram = to * gram,
+                            flat = p.onto_lines[c].transpose();
       eq.cost += sure * p.power[c];
       eq.gradient(rows) += sure * (to * Eigen::Map<const Eigen::VectorXd>(flat.data(), flat.size()));
       eq.hessian(rows, rows) += sure * (of_gram * to.transpose());
@@ -297,3 +300,5 @@ assessment line_problem<Model>::assess(const Eigen::VectorXd& v) const {
 using pluck_problem = line_problem<plain_plucks>;
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -9,9 +9,12 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_layout.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/number_text.hpp>
 
 #include <numeric>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -119,3 +122,5 @@ inline first_step find_step(const std::vector<double>& x, double drop, double pe
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

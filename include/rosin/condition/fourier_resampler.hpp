@@ -22,6 +22,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// From periodic records of `from` samples to `to` samples; both at least 1. Sample 0 stays sample 0.
@@ -60,3 +62,5 @@ template <class T>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -15,6 +15,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Spectra of records of one length, and back. At least `pad` samples (> 0) on either side.
@@ -53,3 +55,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

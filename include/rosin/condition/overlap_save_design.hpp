@@ -15,6 +15,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// y[n] = sum_j taps[j] x[n - first - j]: a negative `first` looks ahead. Without taps it is zero.
@@ -83,3 +85,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

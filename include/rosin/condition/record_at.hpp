@@ -15,6 +15,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// x at the instants at(0) .. at(size - 1), in samples, by windowed sincs of 48 samples; what lies outside is taken to be like the
@@ -52,3 +54,5 @@ template <class Instant>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

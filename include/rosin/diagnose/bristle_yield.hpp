@@ -17,6 +17,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct bristle_yield {
@@ -48,3 +50,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

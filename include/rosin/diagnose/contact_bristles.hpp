@@ -16,6 +16,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick_effects.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -229,3 +231,5 @@ template <class = void>
 ROSIN_INSTANTIATE(contact_hypothesis bristle_hypothesis(stick_bench&, std::vector<contact_take>))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The rms of what is left in each of `parts` equal parts of a stretch of neighbouring samples; stretches of fewer samples than
@@ -33,3 +35,5 @@ namespace rosin {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_as_one.hpp>
 #include <rosin/diagnose/contact_bristles.hpp>
@@ -20,6 +21,8 @@
 #include <rosin/diagnose/contact_stick_effects.hpp>
 #include <rosin/diagnose/contact_width.hpp>
 #include <rosin/diagnose/rod_beside_bristles.hpp>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -257,3 +260,5 @@ template <class = void>
 ROSIN_INSTANTIATE(contact_findings contact_hypotheses(const std::vector<contact_take>&, const contact_model&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

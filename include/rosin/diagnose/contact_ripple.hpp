@@ -14,6 +14,8 @@
 
 #include <complex>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Residuals of one take at ascending samples; `carrier` is what the tone multiplies there (rod speed, friction).
@@ -284,3 +286,5 @@ template <class Real = double>
 ROSIN_INSTANTIATE(contact_hypothesis speed_ripple_hypothesis(stick_bench&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

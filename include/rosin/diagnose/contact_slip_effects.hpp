@@ -14,6 +14,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/slip_bench.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -208,3 +210,5 @@ template <class = void>
 ROSIN_INSTANTIATE(contact_hypothesis law_hypothesis(const slip_bench&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -2,15 +2,18 @@
 // SPDX-License-Identifier: MIT
 //
 // The contact while the string sticks. The declared model says: centre + torsion under the reconstructed force = the rod's speed.
-// Every hypothesis adds columns to that equation (what is linear in the force, or a function of time), and is measured by how
-// much likelier the takes become. All hypotheses are tried on the same samples, those that stick when torsion is fitted
-// freely; and none can gain by what the reconstruction itself does not know (noise, disagreement of its two versions).
+// Every hypothesis adds columns to that equation (linear in the force, or functions of time) and is measured by how much likelier the
+// takes become. All are tried on the same samples, those that stick when torsion is fitted freely; none can gain by what the
+// reconstruction itself does not know (noise, disagreement of its two versions).
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/diagnose/contact_take.hpp>
 #include <rosin/diagnose/stick_columns.hpp>
 #include <rosin/diagnose/stick_design.hpp>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -67,8 +70,7 @@ public:
     for (const auto& r : records_) sum += std::abs(r.take().rod_speed_m_s);
     return sum / static_cast<double>(std::max<std::size_t>(1, records_.size()));
   }
-  /// Surface velocity less the rod's, as best known (free torsion and compliance, the model's ripple of the rod), for whoever needs
-  /// the slips.
+  /// Surface velocity less the rod's, as best known (free torsion, compliance, the model's ripple of the rod): for the slips.
   [[nodiscard]] const std::vector<std::vector<double>>& relative_m_s() const noexcept { return relative_; }
 
   /// The equation for another torsion; without one, for a string that does not turn. `loose`: parameters free, not declared.
@@ -298,3 +300,5 @@ namespace detail {
 }  // namespace detail
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -294,3 +296,5 @@ template <class = void>
 ROSIN_INSTANTIATE(contact_hypothesis creep_hypothesis(stick_bench&, const std::vector<contact_take>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

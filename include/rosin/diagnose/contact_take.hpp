@@ -17,10 +17,13 @@
 #include <string>
 #include <vector>
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/bristle_yield.hpp>
 #include <rosin/diagnose/string_side.hpp>
 #include <rosin/torsion/torsion_fit.hpp>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -193,3 +196,5 @@ struct contact_hypothesis {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,8 @@
 #include <rosin/diagnose/wide_record.hpp>
 #include <rosin/math/reweighted_regression.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -254,3 +256,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::optional<contact_hypothesis> width_hypothesis(stick_bench&, const std::vector<contact_take>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -13,6 +13,8 @@
 #include <rosin/diagnose/sensor_chain.hpp>
 #include <rosin/math/spectrum_line.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -108,3 +110,5 @@ ROSIN_INSTANTIATE(void undo_sensors(const scene_data&, const scene_fit&, std::ar
                                     const std::array<double, 2>&, double, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -16,7 +16,10 @@
 #pragma once
 
 #include <rosin/condition/record_at.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/reconstruct/reconstructor.hpp>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -105,3 +108,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -18,6 +18,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/slip_record.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct thermal_rates {
@@ -288,3 +290,5 @@ template <class = void>
 ROSIN_INSTANTIATE(law_fit fit_thermal(const std::vector<slip_record>&, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -19,6 +19,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -113,3 +115,5 @@ pluck_effect hum_effect(const string_facts& f, double mains_Hz) {
 ROSIN_INSTANTIATE(pluck_effect hum_effect(const string_facts&, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -19,6 +19,8 @@
 #include <rosin/diagnose/contact_bristles.hpp>
 #include <rosin/diagnose/contact_slip_effects.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct law_verdict {
@@ -109,3 +111,5 @@ template <class = void>
 ROSIN_INSTANTIATE(outcome<law_choice> choose_friction_law(const std::vector<contact_take>&, contact_model))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

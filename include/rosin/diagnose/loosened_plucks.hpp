@@ -10,6 +10,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_exchange.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -147,3 +149,5 @@ ROSIN_INSTANTIATE(std::optional<pluck_options> what_to_loosen(const scene_data&,
 }  // namespace detail
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -16,6 +16,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/friction_laws.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// To be added to the force of one stroke.
@@ -242,3 +244,5 @@ template <class = void>
 ROSIN_INSTANTIATE(lost_levels find_lost_levels(const std::vector<slip_record>&, double, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -20,6 +20,8 @@
 
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 enum class mismatch_class { sensor_or_string, common_mode, contact };
@@ -122,3 +124,5 @@ ROSIN_INSTANTIATE(std::optional<plucking_force> plucking_force_of(const scene_da
                                                                   std::size_t, const std::array<double, 2>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

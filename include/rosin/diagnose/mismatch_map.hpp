@@ -25,6 +25,8 @@
 #include <numbers>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// When the waves of a pluck arrive at an end.
@@ -147,3 +149,5 @@ ROSIN_INSTANTIATE(mismatch_map map_of(const std::array<Eigen::VectorXd, 2>&, dou
                                       const band&, const std::array<double, 2>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

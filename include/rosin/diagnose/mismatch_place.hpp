@@ -22,6 +22,8 @@
 
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What acts where: on the string, at one of its ends, in one of the channels, or where the string is plucked, as does a release
@@ -289,3 +291,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::optional<acting_place> place_of_residual(const scene_data&, const scene_fit&, std::size_t))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

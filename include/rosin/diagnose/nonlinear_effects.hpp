@@ -15,6 +15,8 @@
 #include <rosin/diagnose/sensor_chain.hpp>
 #include <rosin/diagnose/stretching_pluck.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -198,3 +200,5 @@ pluck_effect phantom_partials_effect(const string_facts& f, const band& limits, 
 ROSIN_INSTANTIATE(pluck_effect phantom_partials_effect(const string_facts&, const band&, int))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_diagnosis.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Frames that a recorder left out.
@@ -256,3 +258,5 @@ ROSIN_INSTANTIATE(std::optional<odd_pluck> find_odd_pluck(
     const std::function<std::vector<pluck_effect>(const pluck_fit_result&)>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

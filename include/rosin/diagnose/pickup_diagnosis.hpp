@@ -20,6 +20,8 @@
 #include <rosin/diagnose/pickup_prediction.hpp>
 #include <rosin/propagate/band.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -298,3 +300,5 @@ template <class = void>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -10,8 +10,11 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_law_fit.hpp>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -143,3 +146,5 @@ ROSIN_INSTANTIATE(fitted_law with_effect(const line_table&, const fitted_law&, c
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -10,6 +10,8 @@
 #include <rosin/diagnose/pickup_greedy.hpp>
 #include <rosin/diagnose/pickup_strays.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct pickup_question {
@@ -183,3 +185,5 @@ private:
 }  // namespace detail
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -10,6 +10,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_effects.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct greedy_limits {
@@ -137,3 +139,5 @@ ROSIN_INSTANTIATE(law_search search_law(const line_table&, const fitted_law&, co
                                         const greedy_limits&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

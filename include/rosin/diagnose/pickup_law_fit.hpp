@@ -12,6 +12,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_poles.hpp>
 #include <rosin/diagnose/pickup_table.hpp>
@@ -19,6 +20,8 @@
 
 #include <array>
 #include <utility>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -238,3 +241,5 @@ template <class Real = double>
 ROSIN_INSTANTIATE(double predicted_log_likelihood(const line_table&, const fitted_law&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

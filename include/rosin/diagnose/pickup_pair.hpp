@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_ringing.hpp>
 #include <rosin/math/levenberg_marquardt.hpp>
@@ -15,6 +16,8 @@
 #include <array>
 #include <complex>
 #include <limits>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -227,3 +230,5 @@ template <class = void>
 ROSIN_INSTANTIATE(pair_found find_pair(const std::vector<const partial_track*>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

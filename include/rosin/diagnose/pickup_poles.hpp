@@ -18,6 +18,8 @@
 #include <complex>
 #include <numbers>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What the partials of one string follow from. All zero but pitch and 1/Q: an ideal string.
@@ -91,3 +93,5 @@ inline std::complex<double> pickup_characteristic(const pickup_law& l, std::comp
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 
 #include <complex>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One free line: the partial whose glide it shares (0: steady), and its pole.
@@ -193,3 +195,5 @@ void take_out_lines(pickup_signal& s, const judged_stretch& stretch, const std::
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <rosin/calibrate/pickup_fit.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/core/number_text.hpp>
 
@@ -21,6 +22,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -127,3 +130,5 @@ ROSIN_INSTANTIATE(outcome<pickup_ringing> listen(const pickup_signal&, double, c
                                                  const pickup_options&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 
 #include <functional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct stray_line {
@@ -90,3 +92,5 @@ template <class = void>
 ROSIN_INSTANTIATE(stray_lines find_strays(std::span<const double>, double, const std::vector<double>&, double, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

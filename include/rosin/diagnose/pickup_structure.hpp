@@ -14,6 +14,8 @@
 
 #include <limits>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What may be there, and what the declared model holds already.
@@ -156,3 +158,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::vector<structure_hypothesis> structures_of(const std::vector<pickup_ringing>&, const structure_question&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

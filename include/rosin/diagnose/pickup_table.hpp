@@ -8,10 +8,13 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pickup_structure.hpp>
 
 #include <map>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -164,3 +167,5 @@ template <class = void>
 ROSIN_INSTANTIATE(line_table table_of(const std::vector<pickup_ringing>&, const structure_hypothesis&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -18,6 +18,8 @@
 #include <memory>
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -249,3 +251,5 @@ template <class = void>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,8 @@
 
 #include <tuple>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -191,3 +193,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::vector<pluck_effect> catalogue_without(const std::vector<std::string>&, const string_facts&, const band&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -273,3 +275,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::vector<pluck_effect> pluck_effects(const string_facts&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

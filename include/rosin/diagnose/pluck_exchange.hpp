@@ -9,6 +9,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_candidates.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -52,3 +54,5 @@ ROSIN_INSTANTIATE(scene_fit without(const scene_fit&, std::size_t))
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_prediction.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One model that was tried.
@@ -148,3 +150,5 @@ inline void drop_what_is_no_part(pluck_diagnosis& d) {
 }  // namespace detail
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

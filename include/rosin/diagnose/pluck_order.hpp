@@ -6,11 +6,14 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 #include <rosin/math/at_once.hpp>
 
 #include <optional>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin::detail {
 
@@ -90,3 +93,5 @@ void put_in_order(const scene_data& data, const scene_fit& already, std::vector<
 }
 
 }  // namespace rosin::detail
+
+#include <rosin/core/macros_back.ipp>

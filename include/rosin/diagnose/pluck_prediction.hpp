@@ -11,6 +11,8 @@
 #include <rosin/diagnose/mismatch_place.hpp>
 #include <rosin/diagnose/pluck_exchange.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Where the declared model and the recordings part.
@@ -225,3 +227,5 @@ held_out_worth held_out_gain(const scene_data& data, const scene_fit& fit, const
 }  // namespace detail
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,8 @@
 #include <complex>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Something on the string: impedance Z_s / Z = mass_s s + resistance + spring_per_s / s, held by a small compliance: nothing is
@@ -145,3 +147,5 @@ struct nearest_pinned {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

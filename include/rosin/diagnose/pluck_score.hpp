@@ -11,7 +11,10 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/diagnose/scene_plucks.hpp>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -256,3 +259,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -21,6 +21,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_judgement.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -296,3 +298,5 @@ ROSIN_INSTANTIATE(search_result searched(const pluck_diagnosis&, std::vector<plu
 }  // namespace detail
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -22,6 +22,8 @@
 
 #include <algorithm>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -255,3 +257,5 @@ ROSIN_INSTANTIATE(std::optional<odd_pluck> find_rattling_string(const std::vecto
                                                                 const pluck_guess&, const pluck_options&, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -18,6 +18,8 @@
 
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -162,3 +164,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::optional<scene_fit> fit_past_a_force(const scene_data&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -9,10 +9,13 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick_effects.hpp>
 
 #include <list>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -71,3 +74,5 @@ template <class = void>
 ROSIN_INSTANTIATE(contact_hypothesis rod_beside_bristles(const stick_bench&, const std::vector<contact_take>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -10,6 +10,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/pluck_score.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct scene_fit {
@@ -194,3 +196,5 @@ ROSIN_INSTANTIATE(scene_fit fit_scene(const scene_data&, const std::vector<pluck
                                       std::vector<fit_stage>, std::array<double, 2>))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 
 #include <rosin/diagnose/string_poles.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -116,3 +118,5 @@ template <class = void>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -71,3 +73,5 @@ inline void pass_sensors(std::array<std::vector<double>, 2>& force_N, const pluc
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -11,6 +11,8 @@
 
 #include <optional>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A law and the tone of the normal force that goes with it: N (1 + Im(relative exp(2 pi i f t))), size and phase of each take.
@@ -162,3 +164,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

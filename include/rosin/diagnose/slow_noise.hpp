@@ -19,6 +19,8 @@
 
 #include <numeric>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -223,3 +225,5 @@ ROSIN_INSTANTIATE(std::optional<plucks_without_slow_noise> without_slow_noise(co
                                                                               const std::vector<pluck_take>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

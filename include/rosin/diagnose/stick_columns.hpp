@@ -15,6 +15,8 @@
 #include <numbers>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What bristles of a micrometre a newton bend by: a spring with a delay of its own.
@@ -69,3 +71,5 @@ template <class Row>
 }  // namespace detail
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

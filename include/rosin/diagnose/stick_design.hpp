@@ -11,6 +11,8 @@
 
 #include <array>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The equation's rows, ready for more columns.
@@ -64,7 +66,8 @@ template <class = void>
   stick_rows out;
   for (std::size_t i = 0; i < marked.size(); ++i)
     if (marked[i]) kept.push_back(static_cast<Eigen::Index>(i)), out.sample.push_back(all.sample[i]);
-  out.target = all.target(kept), out.shared = all.shared(kept, Eigen::all), out.own = all.own(kept, Eigen::all);
+  const auto of_rows = [&](const auto& m) { return m(kept, Eigen::seqN(0, m.cols())).eval(); };
+  out.target = all.target(kept), out.shared = of_rows(all.shared), out.own = of_rows(all.own);
   return out;
 }
 ROSIN_INSTANTIATE(stick_rows rows_of(const stick_rows&, const std::vector<char>&))
@@ -127,3 +130,5 @@ template <class = void>
 ROSIN_INSTANTIATE(design_fit fit_design(const stick_design&, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -27,6 +27,8 @@
 #include <numbers>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A plane across the one that is plucked: tuned to (1 + detuning), heard `coupling` times as strongly.
@@ -295,3 +297,5 @@ private:
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -10,10 +10,13 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/string_response.hpp>
 
 #include <algorithm>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -174,3 +177,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::vector<damped_line> decay_lines(const pluck_scene&, double, const std::vector<std::complex<double>>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -34,6 +34,8 @@
 
 #include <Eigen/Dense>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -269,3 +271,5 @@ template <class = void>
 ROSIN_INSTANTIATE(loop_response close_loop(const pluck_scene&, double, std::complex<double>))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

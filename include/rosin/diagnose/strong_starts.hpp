@@ -12,6 +12,8 @@
 #include <rosin/diagnose/pluck_score.hpp>
 #include <rosin/diagnose/scene_fit.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin::detail {
 
 /// A way to begin that another method has found: all of the values, for the effect with that id.
@@ -123,3 +125,5 @@ ROSIN_INSTANTIATE(std::vector<found_start> strong_starts(const scene_data&, cons
                                                          std::array<double, 2>, known_starts&))
 
 }  // namespace rosin::detail
+
+#include <rosin/core/macros_back.ipp>

@@ -18,6 +18,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 namespace detail {
@@ -140,3 +142,5 @@ pluck_effect sympathetic_string_effect(const string_facts& f, int end) {
 ROSIN_INSTANTIATE(pluck_effect sympathetic_string_effect(const string_facts&, int))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -11,6 +11,8 @@
 
 #include <boost/math/tools/minima.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One bowed take: recorded nominal newtons, and the calibration that the plucks gave.
@@ -121,3 +123,5 @@ template <class Delta>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -11,6 +11,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/diagnose/contact_stick.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The pitch of one stroke; not `measured`: that of the string at rest, which friction may have flattened.
@@ -84,3 +86,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::vector<stroke_pitch> pitches_of(stick_bench&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,8 @@
 
 #include <type_traits>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Both places of a wide contact, smoothed.
@@ -168,3 +170,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

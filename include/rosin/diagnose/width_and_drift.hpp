@@ -13,6 +13,8 @@
 #include <rosin/diagnose/contact_width.hpp>
 #include <rosin/diagnose/tension_drift.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A take at another tension; what sits on the string stays.
@@ -134,3 +136,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::optional<width_and_drift> find_width_and_drift(const std::vector<contact_take>&, const torsion_values&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

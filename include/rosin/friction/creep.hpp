@@ -20,6 +20,8 @@
 
 #include <rosin/friction/velocity_curve.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 template <class T = double>
@@ -80,3 +82,5 @@ private:
 static_assert(FrictionLaw<creep<two_exponential_curve<>>>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -21,6 +21,8 @@
 #include <rosin/friction/friction_curves.hpp>
 #include <rosin/friction/friction_law.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 template <class T = double>
@@ -129,3 +131,5 @@ private:
 static_assert(FrictionLaw<elasto_plastic<stribeck_curve<>>>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

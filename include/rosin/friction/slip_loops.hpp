@@ -20,9 +20,12 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/friction/slip_phases.hpp>
 
 #include <limits>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -188,3 +191,5 @@ inline void measure_loop(slip_loop& s, std::span<const double> force_N, std::spa
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

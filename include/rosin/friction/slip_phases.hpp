@@ -11,6 +11,8 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -20,6 +20,8 @@
 
 #include <array>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Slips of one take: rows in time's order.
@@ -136,3 +138,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

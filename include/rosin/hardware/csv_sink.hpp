@@ -7,6 +7,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/hardware/byte_link.hpp>
 #include <rosin/hardware/frames.hpp>
 

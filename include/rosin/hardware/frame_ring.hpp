@@ -14,6 +14,8 @@
 #include <memory>
 #include <span>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// T: float or double.
@@ -111,3 +113,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -21,6 +21,8 @@
 #include <string_view>
 #include <utility>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 class grbl_simulator {
@@ -181,3 +183,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -15,6 +15,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/hardware/byte_link.hpp>
 #include <rosin/hardware/frames.hpp>
 #include <rosin/hardware/line_witness.hpp>
@@ -23,6 +24,8 @@
 #include <limits>
 #include <map>
 #include <thread>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -293,3 +296,5 @@ private:
 static_assert(MotionStage<grbl_stage>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct channel_level {
@@ -51,3 +53,5 @@ private:
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -15,6 +15,8 @@
 #include <cmath>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct trigger_settings {
@@ -81,3 +83,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -12,6 +12,8 @@
 #include <thread>
 #include <utility>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 template <FrameSource Source>
@@ -49,3 +51,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

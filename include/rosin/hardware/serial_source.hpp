@@ -13,6 +13,8 @@
 
 #include <algorithm>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 class serial_source {
@@ -108,3 +110,5 @@ private:
 static_assert(FrameSource<serial_source>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -10,6 +10,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/hardware/frames.hpp>
 
 #include <array>

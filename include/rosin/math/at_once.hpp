@@ -14,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// How many threads are meant: so many, or for 0 as many as there are cores.
@@ -47,3 +49,5 @@ void at_once(std::size_t count, int threads, const Work& work) {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

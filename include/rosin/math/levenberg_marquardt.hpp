@@ -25,6 +25,8 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -34,6 +36,8 @@
 #include <limits>
 #include <type_traits>
 #include <utility>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -196,3 +200,5 @@ requires LeastSquares<Problem, Point>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -20,6 +20,8 @@
 #include <cmath>
 #include <concepts>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 template <class L>
@@ -95,3 +97,5 @@ struct student_loss {
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -16,6 +16,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct spectrum_line {
@@ -110,3 +112,5 @@ template <class = void>
 ROSIN_INSTANTIATE(std::vector<spectrum_line> strongest_lines(std::span<const double>, double, double, double, std::size_t))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -23,6 +23,8 @@
 
 #include <cmath>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Which of the two normalisations of Eq. (6).
@@ -83,3 +85,5 @@ template <class = void>
 ROSIN_INSTANTIATE(fir airy_kernel(double, double, const band&, double, airy_form, int))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -24,6 +24,8 @@
 #include <utility>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// y[n] = sum_j taps[j] x[n - first - j]. A negative `first` looks ahead.
@@ -175,3 +177,5 @@ template <Transfer H>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -5,6 +5,8 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
+
 #include <array>
 #include <cmath>
 #include <limits>

@@ -20,6 +20,8 @@
 #include <numbers>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A termination: relative admittance Z Y at a frequency in Hz, and how long it rings (s, to a thousandth; 0: not at all).
@@ -96,3 +98,5 @@ struct reflection_of_end {
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

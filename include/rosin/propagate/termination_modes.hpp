@@ -25,6 +25,8 @@
 #include <string>
 #include <utility>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Where the modes have to answer as the termination does, how well, and how many they may be.
@@ -214,3 +216,5 @@ template <Termination End>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

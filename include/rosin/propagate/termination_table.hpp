@@ -13,6 +13,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/number_text.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/math/fft.hpp>
@@ -20,6 +21,8 @@
 
 #include <span>
 #include <string>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -196,3 +199,5 @@ private:
 static_assert(Termination<table_termination> && Termination<reflection_termination>);
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

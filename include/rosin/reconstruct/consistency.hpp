@@ -9,6 +9,8 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
+
 #include <cmath>
 #include <cstddef>
 #include <span>

@@ -7,6 +7,8 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <span>

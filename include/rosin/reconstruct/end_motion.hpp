@@ -23,6 +23,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Z V of an end in newtons, sample by sample.
@@ -154,3 +156,5 @@ template <Termination End>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -11,6 +11,8 @@
 #include <rosin/reconstruct/end_motion.hpp>
 #include <rosin/reconstruct/sensitivity.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// One mode, and the end that it belongs to: 0 near, 1 far.
@@ -73,3 +75,5 @@ requires(Physics::moving_ends) void append_end_sensitivity(reconstruction_sensit
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -16,6 +16,8 @@
 
 #include <Eigen/Dense>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// How far a stroke may lie from the plucks: one standard deviation each.
@@ -153,3 +155,5 @@ template <class Physics = full_physics>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -23,6 +23,8 @@
 #include <string>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A design in double, of any length.
@@ -214,3 +216,5 @@ template <class T, std::size_t Taps, std::size_t Line, std::size_t Short>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -18,6 +18,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/math/lanes.hpp>
 #include <rosin/reconstruct/passage_sums.hpp>
 #include <rosin/reconstruct/streaming_reconstructor.hpp>
@@ -27,6 +28,8 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -234,3 +237,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

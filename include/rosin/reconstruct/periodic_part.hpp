@@ -14,6 +14,7 @@
 #pragma once
 
 #include <rosin/calibrate/pluck_start.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 
 #include <Eigen/Dense>
@@ -22,6 +23,8 @@
 #include <numbers>
 #include <span>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -149,3 +152,5 @@ ROSIN_INSTANTIATE(outcome<periodic_part> find_periodic_part(std::span<const doub
                                                             double, int))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -9,12 +9,15 @@
 #pragma once
 
 #include <rosin/condition/overlap_save.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/reconstruct/bow_point_transfer.hpp>
 
 #include <limits>
 #include <memory>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -84,3 +87,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -15,6 +15,8 @@
 #include <numeric>
 #include <span>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Columns: one waveform parameter each, then what else is uncertain (end_sensitivity.hpp). Rows: samples of the take.
@@ -114,3 +116,5 @@ template <class Physics>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

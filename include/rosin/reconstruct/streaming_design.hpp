@@ -15,6 +15,8 @@
 #include <array>
 #include <string>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Fails where a filter is longer than Taps or reaches back further than Line. gain: recorded / true, of near and far.
@@ -46,3 +48,5 @@ template <class T, std::size_t Taps, std::size_t Line, class Physics = full_phys
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

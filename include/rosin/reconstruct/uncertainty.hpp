@@ -17,6 +17,8 @@
 
 #include <cmath>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Standard deviations of a reconstruction; vectors are as long as the take.
@@ -118,3 +120,5 @@ template <class Physics = full_physics>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

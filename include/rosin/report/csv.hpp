@@ -7,8 +7,10 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/number_text.hpp>
 #include <rosin/report/input_file.hpp>
+#include <rosin/report/output_file.hpp>
 #include <rosin/report/table.hpp>
 
 #include <algorithm>
@@ -19,6 +21,8 @@
 #include <ostream>
 #include <sstream>
 #include <string_view>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -138,3 +142,5 @@ std::size_t each_field(std::string_view line, Use use) {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,8 @@
 #include <array>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct sensor_faults {
@@ -74,3 +76,5 @@ inline void disturb(std::array<std::vector<double>, 2>& end_N, const sensor_faul
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -15,6 +15,8 @@
 #include <rosin/simulate/burdened_take.hpp>
 #include <rosin/simulate/modal_pluck.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What a rig is besides its string.
@@ -177,3 +179,5 @@ template <FrictionLaw Law, RodMotion Motion>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

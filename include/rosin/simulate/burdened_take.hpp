@@ -16,6 +16,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Forces on the ends and the truth at the contact at every step; instant of step n: n step_s.
@@ -213,3 +215,5 @@ template <FrictionLaw Law, class Motion>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -19,6 +19,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Standard normal deviates, the same on every platform.
@@ -124,3 +126,5 @@ private:
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

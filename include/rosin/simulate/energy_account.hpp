@@ -24,6 +24,8 @@
 #include <rosin/simulate/mode_step.hpp>
 #include <rosin/simulate/stroke_energy.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What a step does to one mode, as quadratic forms of (Re z, Im z, g_begin, g_end) at its begin.
@@ -150,3 +152,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -25,6 +25,8 @@
 
 #include <rosin/simulate/mode_step.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What acts at the end of a step, besides the force that is still to be found.
@@ -223,3 +225,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -10,6 +10,8 @@
 #include <rosin/simulate/modal_bank.hpp>
 #include <rosin/simulate/modal_take.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The rod at an instant: its speed, and the force that presses it against the string (<= 0: it is off).
@@ -94,3 +96,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -18,6 +18,8 @@
 #include <rosin/core/outcome.hpp>
 #include <rosin/simulate/modal_take.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The wire holds the string from the start and lets go at `release_s`: at once, or over `release_duration_s` as
@@ -171,3 +173,5 @@ inline modal_take silent_take(double sample_rate_Hz, std::size_t size) {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

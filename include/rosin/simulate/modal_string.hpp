@@ -28,6 +28,8 @@
 
 #include <rosin/propagate/string_parameters.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Where the loss of a mode sits: in a drag on the string's motion, or in its elastic stress.
@@ -178,3 +180,5 @@ namespace detail {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -16,6 +16,8 @@
 #include <rosin/simulate/modal_contact.hpp>
 #include <rosin/simulate/modal_decimator.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// How the rod moves and presses: a function of time.
@@ -211,3 +213,5 @@ template <FrictionLaw Law, RodMotion Motion = steady_rod>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -19,6 +19,8 @@
 #include <rosin/simulate/modal_pluck.hpp>
 #include <rosin/simulate/modal_stroke.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What the notebook says of a rig.
@@ -175,3 +177,5 @@ inline void convert_takes(const random_rig& r, rig_recordings& recordings) {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -24,6 +24,8 @@
 #include <string_view>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 enum class bowed_regime { none, helmholtz, multiple_slip, low_frequency, raucous };
@@ -115,3 +117,5 @@ namespace detail {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -16,6 +16,8 @@
 #include <rosin/simulate/wave_design.hpp>
 #include <rosin/simulate/wave_way.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 template <class T = double>
@@ -145,3 +147,5 @@ ROSIN_INSTANTIATE(outcome<travelling_design> design_travelling_wave(const modal_
                                                                     const std::array<modal_termination, 2>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -11,6 +11,8 @@
 #include <rosin/simulate/travelling_design.hpp>
 #include <rosin/simulate/wave_string.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Torsion of the surface at a contact that travels: partials, and the compliance of those left out (as in modal_contact.hpp).
@@ -159,3 +161,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

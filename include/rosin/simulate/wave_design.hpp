@@ -16,6 +16,8 @@
 #include <rosin/simulate/wave_local.hpp>
 #include <rosin/simulate/wave_settings.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Kernels in double, and what the design has to say of itself.
@@ -198,3 +200,5 @@ ROSIN_INSTANTIATE(outcome<wave_design> design_wave(const modal_rig&, double, con
                                                    const std::array<modal_termination, 2>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -13,6 +13,8 @@
 #include <rosin/simulate/modal_string.hpp>
 #include <rosin/simulate/wave_loop.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Round trips of a wave to either end.
@@ -91,3 +93,5 @@ template <class Echo>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

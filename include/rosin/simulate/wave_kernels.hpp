@@ -24,6 +24,8 @@
 #include <rosin/simulate/point_modes.hpp>
 #include <rosin/simulate/wave_end.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Taps in the run's scalar, for lags first, first + 1, ...
@@ -87,3 +89,5 @@ struct wave_kernels {
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

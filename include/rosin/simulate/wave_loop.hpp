@@ -26,6 +26,8 @@
 #include <rosin/core/instantiate.hpp>
 #include <rosin/propagate/fir.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// sum of taps[j] z^-(first + j): the response to a motion z^n, also a damped one.
@@ -176,3 +178,5 @@ template <class = void>
 ROSIN_INSTANTIATE(double largest_gain(const wave_loop&, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -9,8 +9,11 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/simulate/modal_pluck.hpp>
 #include <rosin/simulate/wave_stroke.hpp>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -66,3 +69,5 @@ template <class T = double>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -11,6 +11,8 @@
 
 #include <rosin/simulate/modal_take.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct wave_settings {
@@ -51,3 +53,5 @@ struct wave_settings {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

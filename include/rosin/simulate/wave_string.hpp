@@ -18,6 +18,8 @@
 #include <rosin/simulate/modal_contact.hpp>
 #include <rosin/simulate/wave_kernels.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A signal whose past is kept as far as it is needed; indices count from the start of the run.
@@ -278,3 +280,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

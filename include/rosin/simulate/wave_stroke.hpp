@@ -17,6 +17,8 @@
 #include <rosin/simulate/wave_design.hpp>
 #include <rosin/simulate/wave_string.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct wave_stroke {
@@ -230,3 +232,5 @@ template <class T = double, FrictionLaw Law, RodMotion Motion = steady_rod>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

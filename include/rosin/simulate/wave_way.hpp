@@ -21,6 +21,8 @@
 #include <rosin/simulate/wave_echo.hpp>
 #include <rosin/simulate/wave_local.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Part of the string that a contact keeps to, as distances from the near end / length.
@@ -119,3 +121,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -17,6 +17,8 @@
 #include <span>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// cos^2(pi f / (2 edge)), zero from the edge on.
@@ -118,3 +120,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

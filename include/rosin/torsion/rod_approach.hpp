@@ -14,6 +14,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/math/median.hpp>
 #include <rosin/math/reweighted_regression.hpp>
@@ -25,6 +26,8 @@
 #include <cstddef>
 #include <span>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -117,3 +120,5 @@ template <class Real = double>
 ROSIN_INSTANTIATE(rod_approach find_rod_approach(std::span<const double>, double, double, double, double))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/friction/slip_phases.hpp>
 #include <rosin/torsion/contact_signal.hpp>
@@ -16,6 +17,8 @@
 
 #include <array>
 #include <optional>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -200,3 +203,5 @@ ROSIN_INSTANTIATE(stick_rows pick(const std::vector<char>&, const std::vector<do
                                   const std::vector<std::vector<double>>&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -21,6 +21,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The rows of one take: target = shared * s + own * o + residual. `sample` says from where each row is (ascending).
@@ -178,3 +180,5 @@ template <class Real = double>
 ROSIN_INSTANTIATE(stick_solution stick_regression(const std::vector<stick_rows>&, double, const stick_prior&))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/instantiate.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/math/reweighted_regression.hpp>
@@ -23,6 +24,8 @@
 
 #include <optional>
 #include <string>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -288,3 +291,5 @@ template <class = void>
 ROSIN_INSTANTIATE(outcome<torsion_fit_result> fit_torsion(const std::vector<stick_take>&, std::optional<torsion_values>))
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

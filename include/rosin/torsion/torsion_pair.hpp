@@ -15,6 +15,8 @@
 
 #include <rosin/torsion/torsion_fit.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 class torsion_pair {
@@ -72,3 +74,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -49,6 +49,34 @@ TEST_CASE("release, pitch and noise are measured on the way") {
   CHECK(*c.channels[0].noise_rms == test::approx(4e-4).epsilon(0.08));
 }
 
+TEST_CASE("a fundamental that is off by a power of ten is told by the ringing, and nothing else is said") {
+  for (const double factor : {1e-3, 1e-2, 0.1, 10.0}) {
+    CAPTURE(factor);
+    test::pluck p;
+    auto r = test::two_force_rig(p);
+    const auto x = test::pluck_signals(r, p);
+    r.string.fundamental_Hz *= factor;
+    const auto c = rosin::check_take(r, r.takes[0], x);
+    CHECK(kinds(c) == "power-of-ten(near:error) ");
+    REQUIRE(c.pitch_Hz);
+    CHECK(*c.pitch_Hz == test::approx(330).epsilon(1e-2));
+  }
+}
+
+TEST_CASE("a scale or a force that is off by a power of ten: the value that would agree is said") {
+  test::pluck p;
+  auto r = test::two_force_rig(p);
+  const auto x = test::pluck_signals(r, p);
+  const double right = *r.takes[0].force_N;
+  for (const double factor : {0.01, 0.1, 10.0}) {
+    CAPTURE(factor);
+    r.takes[0].force_N = factor * right;
+    const auto c = rosin::check_take(r, r.takes[0], x);
+    REQUIRE(!c.findings.empty());
+    CHECK(c.findings[0].what.find(": off by a power of ten; force_N = " + rosin::detail::figure(right)) != std::string::npos);
+  }
+}
+
 TEST_CASE("swapped channels, DC and AC coupled") {
   for (const double position : {0.1, 0.3, 0.42, 0.8}) {
     CAPTURE(position);

@@ -1,0 +1,16 @@
+cmake_minimum_required(VERSION 3.25)  # a -P script starts with no policies set
+# A header that uses NaN or infinity refuses to be compiled where they are taken not to exist (core/finite_math.hpp).
+set(include ${ROOT}/include)
+file(GLOB_RECURSE headers RELATIVE ${include} ${include}/rosin/*/*.hpp)
+foreach(header IN LISTS headers)
+  file(READ ${include}/${header} text)
+  string(REGEX REPLACE "//[^\n]*" "" text "${text}")
+  string(FIND "${text}" "#include <rosin/core/finite_math.hpp>" at)
+  if(text MATCHES "isfinite|isnan|isinf|quiet_NaN|infinity\\(\\)|std::nan\\(")
+    if(at EQUAL -1)
+      message(SEND_ERROR "${header} uses ${CMAKE_MATCH_0}: it has to include <rosin/core/finite_math.hpp>")
+    endif()
+  elseif(NOT at EQUAL -1)
+    message(SEND_ERROR "${header} includes <rosin/core/finite_math.hpp>, but uses neither NaN nor infinity")
+  endif()
+endforeach()
