@@ -110,6 +110,7 @@
 #include <rosin/reconstruct/dc_level.hpp>
 #include <rosin/reconstruct/end_motion.hpp>
 #include <rosin/reconstruct/end_sensitivity.hpp>
+#include <rosin/reconstruct/end_weights.hpp>
 #include <rosin/reconstruct/fine_tune.hpp>
 #include <rosin/reconstruct/passage_design.hpp>
 #include <rosin/reconstruct/passage_reconstructor.hpp>
@@ -121,6 +122,7 @@
 #include <rosin/reconstruct/streaming_design.hpp>
 #include <rosin/reconstruct/streaming_reconstructor.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
+#include <rosin/reconstruct/whole_record.hpp>
 
 #include <rosin/torsion/contact_signal.hpp>
 #include <rosin/torsion/rod_approach.hpp>

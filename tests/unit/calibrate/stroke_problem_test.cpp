@@ -64,8 +64,8 @@ TEST_CASE("With the true string both ends tell of one force, whatever the fricti
     up[p] += step, down[p] -= step;
     const double slope = (problem.linearise(up).cost - problem.linearise(down).cost) / (2 * step);
     CAPTURE(known.layout.name(p));
-    // the window is not turned like the signal: to a hundredth of the most that the slope could be
-    CHECK(std::abs(slope + 2 * here.gradient[p]) < 0.02 * std::sqrt(here.hessian(p, p) * here.cost));
+    // the window is not turned like the signal: to a few hundredths of the most that the slope could be
+    CHECK(std::abs(slope + 2 * here.gradient[p]) < 0.05 * std::sqrt(here.hessian(p, p) * here.cost));
   }
 }
 
