@@ -85,10 +85,12 @@
 #include <rosin/calibrate/pluck_model.hpp>
 #include <rosin/calibrate/pluck_problem.hpp>
 #include <rosin/calibrate/pluck_start.hpp>
+#include <rosin/calibrate/stroke_calibration.hpp>
 #include <rosin/calibrate/stroke_fit.hpp>
 #include <rosin/calibrate/stroke_layout.hpp>
 #include <rosin/calibrate/stroke_noise.hpp>
 #include <rosin/calibrate/stroke_problem.hpp>
+#include <rosin/calibrate/stroke_scale.hpp>
 #include <rosin/calibrate/stroke_spectra.hpp>
 #include <rosin/calibrate/stroke_start.hpp>
 #include <rosin/calibrate/uneven_string.hpp>
