@@ -212,7 +212,7 @@ template <class = void>
   if (const std::string why = problem_with(takes, guess); !why.empty()) return failure{why};
   const double pitch_Hz = starting_pitch_Hz(takes, guess);
   stroke_fit_result all = detail::fit_stages(takes, guess, options, pitch_Hz);
-  constexpr double suspicious = 2e-3, much_less = 3;
+  constexpr double suspicious = 5e-3, much_less = 3;
   if (takes.size() < 3 || !options.one_by_one || all.noise.model < suspicious) return all;
   std::optional<stroke_fit_result> best;
   std::size_t odd = 0;
