@@ -90,6 +90,15 @@
 #include <rosin/calibrate/pluck_model.hpp>
 #include <rosin/calibrate/pluck_problem.hpp>
 #include <rosin/calibrate/pluck_start.hpp>
+#include <rosin/calibrate/stroke_calibration.hpp>
+#include <rosin/calibrate/stroke_fit.hpp>
+#include <rosin/calibrate/stroke_layout.hpp>
+#include <rosin/calibrate/stroke_noise.hpp>
+#include <rosin/calibrate/stroke_problem.hpp>
+#include <rosin/calibrate/stroke_scale.hpp>
+#include <rosin/calibrate/stroke_spectra.hpp>
+#include <rosin/calibrate/stroke_start.hpp>
+#include <rosin/calibrate/uneven_string.hpp>
 
 #include <rosin/propagate/airy_kernel.hpp>
 #include <rosin/propagate/band.hpp>
@@ -108,6 +117,7 @@
 #include <rosin/reconstruct/dc_level.hpp>
 #include <rosin/reconstruct/end_motion.hpp>
 #include <rosin/reconstruct/end_sensitivity.hpp>
+#include <rosin/reconstruct/end_weights.hpp>
 #include <rosin/reconstruct/fine_tune.hpp>
 #include <rosin/reconstruct/passage_design.hpp>
 #include <rosin/reconstruct/passage_reconstructor.hpp>
@@ -120,6 +130,7 @@
 #include <rosin/reconstruct/streaming_reconstructor.hpp>
 #include <rosin/reconstruct/stroke_doubts.hpp>
 #include <rosin/reconstruct/uncertainty.hpp>
+#include <rosin/reconstruct/whole_record.hpp>
 
 #include <rosin/torsion/contact_signal.hpp>
 #include <rosin/torsion/rod_approach.hpp>

@@ -28,6 +28,8 @@
 #include <rosin/calibrate/pickup_pitch.hpp>
 #include <rosin/calibrate/pickup_regression.hpp>
 #include <rosin/calibrate/pluck_fit.hpp>
+#include <rosin/calibrate/stroke_calibration.hpp>
+#include <rosin/calibrate/stroke_fit.hpp>
 #include <rosin/friction/slip_samples.hpp>
 #include <rosin/math/spectrum_line.hpp>
 #include <rosin/propagate/airy_kernel.hpp>
