@@ -255,15 +255,14 @@ private:
 /// Inverse over the free parameters; rows and columns of the fixed ones are zero.
 template <class Layout>
 [[nodiscard]] Eigen::MatrixXd invert_free(const Layout& layout, const Eigen::MatrixXd& hessian) {
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  Eigen::MatrixXd inverse =
-      scale.asDiagonal() * Eigen::MatrixXd(scaled.completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
+  std::vector<Eigen::Index> free;
   for (Eigen::Index p = 0; p < layout.size(); ++p)
-    if (!layout.is_free(p)) {
-      inverse.row(p).setZero();
-      inverse.col(p).setZero();
-    }
+    if (layout.is_free(p)) free.push_back(p);
+  const Eigen::VectorXd scale = hessian.diagonal()(free).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian(free, free) * scale.asDiagonal();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(hessian.rows(), hessian.cols());
+  inverse(free, free) =
+      scale.asDiagonal() * Eigen::MatrixXd(scaled.completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
   return inverse;
 }
 
