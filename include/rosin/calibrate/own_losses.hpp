@@ -11,7 +11,7 @@
 //     s^2 = sum d_n^2 / sum (1 - v_n / s^2),     -2 ln(evidence) = cost + sum d_n^2 / s^2 + sum ln(s^2 / v_n).
 //
 // A line keeps its |s|, as a damped mode does, so that what it loses more also makes it slower, in second order. s = 0 is the law itself:
-// then nothing here is free. A line belongs to the mode whose frequency is next to it, whatever else has moved it.
+// then nothing here is free. A line belongs to the mode whose frequency is next to it.
 //
 #pragma once
 
@@ -20,6 +20,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <vector>
 
 namespace rosin {
 
@@ -28,11 +29,29 @@ public:
   /// `own`: d_1, d_2, ...
   own_losses(const ringing_string& string, Eigen::VectorXd own) : string_{string}, own_{std::move(own)} {}
 
-  /// The mode whose line this is, from 1; 0: none that has a loss of its own.
+  /// Of a string with things on it or ends that yield: these are its lines, one a mode in order of frequency.
+  void follow(const std::vector<damped_line>& lines) {
+    at_rad_s_.clear();
+    for (const damped_line& line : lines)
+      if (line.pole.imag() > 0) at_rad_s_.push_back(line.pole.imag());
+    std::sort(at_rad_s_.begin(), at_rad_s_.end());
+  }
+  /// The mode whose line this is, from 1; 0: none that has a loss of its own, or one beside which the string's loss is little.
   [[nodiscard]] int mode_of(std::complex<double> pole) const {
-    if (!(pole.imag() > 0)) return 0;
-    const double f = pole.imag() / (2 * std::numbers::pi * string_.fundamental_Hz), x = f * f, b = string_.inharmonicity;
-    const double n = std::round(std::sqrt(2 * x / (1 + std::sqrt(std::max(0.0, 1 + 4 * b * x)))));
+    constexpr double little = 20;
+    const double spacing = 2 * std::numbers::pi * string_.fundamental_Hz;
+    if (!(pole.imag() > 0) || -pole.real() > little * half_loss(pole) * pole.imag()) return 0;
+    double n = 0;
+    if (at_rad_s_.empty()) {
+      const double f = pole.imag() / spacing, x = f * f, b = string_.inharmonicity;
+      n = std::round(std::sqrt(2 * x / (1 + std::sqrt(std::max(0.0, 1 + 4 * b * x)))));
+    } else {
+      const auto above = std::lower_bound(at_rad_s_.begin(), at_rad_s_.end(), pole.imag());
+      const bool below =
+          above == at_rad_s_.end() || (above != at_rad_s_.begin() && pole.imag() - above[-1] < above[0] - pole.imag());
+      const auto next = below ? above - 1 : above;
+      if (std::abs(*next - pole.imag()) < spacing / 2) n = static_cast<double>(next - at_rad_s_.begin() + 1);
+    }
     return n >= 1 && n <= static_cast<double>(own_.size()) ? static_cast<int>(n) : 0;
   }
 
@@ -77,6 +96,7 @@ private:
 
   ringing_string string_;
   Eigen::VectorXd own_;
+  std::vector<double> at_rad_s_;
 };
 
 /// Partials of a pluck (pluck_model.hpp) of a string whose modes have losses of their own.

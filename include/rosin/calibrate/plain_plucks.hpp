@@ -19,7 +19,12 @@ struct plain_plucks : pluck_layout {
   std::array<double, 2> ac_coupled_Hz{};
 
   plain_plucks(const pluck_layout& layout, std::array<double, 2> corner_Hz) : pluck_layout{layout}, ac_coupled_Hz{corner_Hz} {}
+  template <class = void>
+  [[nodiscard]] rosin::own_losses own_losses_at(const Eigen::VectorXd& v, std::size_t, const band&, int) const {
+    return own_losses_of(v, string(v));
+  }
   /// The ringing partials first, then one slow line a channel.
+  template <class = void>
   [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
                                                const band& limits, int most) const {
     const double newtons = std::exp(v[at(take, strength)]), released = release_s(v, take);

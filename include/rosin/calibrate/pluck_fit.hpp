@@ -46,6 +46,7 @@ struct pluck_fit_result {
   [[nodiscard]] ringing_string string() const {
     return layout.string(value);
   }
+  template <class = void>
   [[nodiscard]] rosin::own_losses own() const {
     return {string(), Eigen::VectorXd::Map(own_losses.data(), static_cast<Eigen::Index>(own_losses.size()))};
   }

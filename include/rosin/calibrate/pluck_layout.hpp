@@ -70,6 +70,7 @@ public:
   [[nodiscard]] bool is_own_loss(Eigen::Index p) const { return p >= first_of_own() && p < first_of_ends(); }
   /// They are free, and known to within their scatter, where that is not zero.
   [[nodiscard]] bool has_own_losses(const Eigen::VectorXd& v) const { return own_losses() > 0 && v[loss_scatter()] > 0; }
+  template <class = void>
   [[nodiscard]] rosin::own_losses own_losses_of(const Eigen::VectorXd& v, const ringing_string& string) const {
     return {string, v.segment(std::min(first_of_own(), v.size()), has_own_losses(v) ? own_losses() : 0)};
   }

@@ -175,7 +175,7 @@ std::array<Eigen::MatrixXd, 2> line_problem<Model>::sensitivities(const Eigen::V
       }
   }
   if (part == 0 || !model_.has_own_losses(v) || !model_.is_free(model_.first_of_own())) return out;
-  const auto own = model_.own_losses_of(v, model_.string(v));
+  const auto own = model_.own_losses_at(v, take, limits_, partials_);
   const double age_s = takes_[take].part[part].begin_s - model_.release_s(v, take);
   for (Eigen::Index n = 0; n < N; ++n) {
     const damped_line& line = at[static_cast<std::size_t>(n)];

@@ -136,6 +136,15 @@ public:
     return s;
   }
 
+  /// Of the string's own lines, whatever moves them.
+  template <class = void>
+  [[nodiscard]] rosin::own_losses own_losses_at(const Eigen::VectorXd& v, std::size_t take, const band& limits, int most) const {
+    const pluck_scene s = scene(v, static_cast<int>(take));
+    rosin::own_losses own = own_losses_of(v, s.string);
+    if (s.plain_string()) own.follow(detail::string_lines(s, v[position(take)], most, {}, limits.stop_Hz));
+    else own.follow(strings_->lines(key(v, s), s, v[position(take)], limits, most));
+    return own;
+  }
   template <class = void>
   [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
                                                const band& limits, int most) const {
@@ -147,8 +156,11 @@ public:
     if (part == 1) {
       out = s.plain_string() ? detail::string_lines(s, position_now, most, {}, limits.stop_Hz)
                              : strings_->lines(key(v, s), s, position_now, limits, most);
-      if (has_own_losses(v))
-        for (const rosin::own_losses own = own_losses_of(v, s.string); damped_line & line : out) own.apply_to(line);
+      if (has_own_losses(v)) {
+        rosin::own_losses own = own_losses_of(v, s.string);
+        own.follow(out);
+        for (damped_line& line : out) own.apply_to(line);
+      }
       out = recorded_lines(std::move(out), s, position_now, limits);
       for (damped_line& line : out) {
         for (std::size_t c = 0; c < 2; ++c)

@@ -56,4 +56,19 @@ TEST_CASE("the derivatives of a line by its own loss are those of differences") 
   }
 }
 
+TEST_CASE(
+    "where something else moves the lines, each still has a mode of its own; what is damped by more than the string has none") {
+  rosin::own_losses own(steel, Eigen::VectorXd::Zero(5));
+  const double w = 2 * std::numbers::pi * 660;
+  std::vector<rosin::damped_line> lines{{{-3, 1.1 * w}, {}}, {{-3, 1.7 * w}, {}}, {{-3, 2.2 * w}, {}}, {{-40, 0}, {}}};
+  own.follow(lines);
+  CHECK(own.mode_of(lines[0].pole) == 1);
+  CHECK(own.mode_of(lines[1].pole) == 2);  // 2.2 is next to the second partial as well
+  CHECK(own.mode_of(lines[2].pole) == 3);
+  CHECK(own.mode_of(lines[3].pole) == 0);
+  CHECK(own.mode_of({-3, 2.5 * w}) == 3);
+  CHECK(own.mode_of({-3, 3.2 * w}) == 0);
+  CHECK(own.mode_of({-w / 10, 1.7 * w}) == 0);
+}
+
 }  // namespace calibrate_own_losses
