@@ -136,6 +136,8 @@ json fit_json(const rig_calibration& c) {
           {"sd", sds},
           {"covariance", matrix(c.fit.covariance)},
           {"misfit", number_or_null(c.fit.misfit)},
+          {"loss_scatter", c.fit.loss_scatter},
+          {"ln_loss_of_modes", c.fit.own_losses},
           {"converged", c.fit.converged},
           {"iterations", c.fit.iterations},
           {"band_Hz", {c.fit.limits.pass_Hz, c.fit.limits.stop_Hz}},

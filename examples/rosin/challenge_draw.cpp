@@ -194,6 +194,7 @@ challenge_rig draw_challenge(const challenge_choice& choice) {
   rosin::gaussian_source s{choice.seed ^ 0x9e3779b97f4a7c15ULL};
   draw_other_string(choice.pitch_Hz, r, s);
   r.base.rig.damping = s.uniform() < 0.5 ? rosin::damping_convention::viscous : rosin::damping_convention::kelvin_voigt;
+  r.base.rig.uneven = {choice.loss_scatter, choice.seed};
   r.bowed = r.base.rig;
   const auto& all = hideable();
   const auto any = [&] { return all[static_cast<std::size_t>(s.uniform() * static_cast<double>(all.size()))]; };
@@ -231,7 +232,8 @@ json truth_of(const challenge_rig& r) {
             {"tension_N", t.tension_N},
             {"fundamental_Hz", t.fundamental_Hz},
             {"bending_stiffness_Nm2", t.bending_stiffness_Nm2},
-            {"q", t.loss.quality}}},
+            {"q", t.loss.quality},
+            {"loss_scatter", r.base.rig.uneven.scatter}}},
           {"position", r.base.position},
           {"gain", r.base.gain},
           {"noise_N", r.base.noise_N},

@@ -58,6 +58,7 @@ struct challenge_choice {
   double noise_dB = 0;              ///< 0: drawn; else peak of the loudest pluck over the noise's standard deviation
   std::vector<std::string> wanted;  ///< these, and of `effects` no others while they are as many
   std::vector<double> pitch_Hz{};   ///< of the strings, lowest and highest; none: 280 to 870
+  double loss_scatter = 0;          ///< of ln 1/Q of the modes, each by itself
 };
 
 inline double evenly_in_log(rosin::gaussian_source& s, double low, double high) {

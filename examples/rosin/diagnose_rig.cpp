@@ -136,7 +136,8 @@ void take_over(const rosin::pluck_diagnosis& p, const rosin::rig_values& values,
 
 void add_calibration(const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
   for (Eigen::Index i = 0; i < p.data.layout.size(); ++i)
-    d.calibration.push_back({p.data.layout.name(i), p.best.value[i], p.best.sd.size() > i ? p.best.sd[i] : 0.0});
+    if (!p.data.layout.is_own_loss(i) && i != (p.data.layout.own_losses() > 0 ? p.data.layout.loss_scatter() : -1))
+      d.calibration.push_back({p.data.layout.name(i), p.best.value[i], p.best.sd.size() > i ? p.best.sd[i] : 0.0});
   Eigen::Index at = p.data.layout.size();
   for (const auto& e : p.best.effects)
     for (const auto& q : e.parameters) {

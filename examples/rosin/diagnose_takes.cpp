@@ -162,6 +162,9 @@ void assume_of_plucks(const rosin::pluck_diagnosis& p, rig_diagnosis& d) {
     d.assumed.push_back("the string's loss is uneven: 1/Q is up to " + in_digits(100 * most, "%.2g") +
                         " % off its law at a partial");
   }
+  if (p.data.layout.has_own_losses(p.best.value))
+    d.assumed.push_back("each mode of the string loses in its own way: 1/Q is off its law by " +
+                        in_digits(100 * p.best.value[p.data.layout.loss_scatter()], "%.2g") + " % (standard deviation)");
   if (p.data.options.own_places) {
     double least = 1, most = -1;
     for (std::size_t t = 0; t < p.data.takes.size(); ++t) {

@@ -28,7 +28,7 @@ struct pluck_shape {
 
   pluck_shape(const rosin::pluck_fit_result& fit, double position, const rosin::band& limits, int most,
               const std::array<double, 2>& ac_coupled_Hz) {
-    lines = rosin::pluck_lines(fit.string(), position, 0, limits, most);
+    lines = rosin::pluck_lines(fit.string(), fit.own(), position, 0, limits, most);
     for (std::size_t c = 0; c < 2; ++c) {
       const double gain = std::exp(fit.value[rosin::pluck_layout::gain_near + static_cast<int>(c)]);
       corner[c] = 2 * pi * ac_coupled_Hz[c];

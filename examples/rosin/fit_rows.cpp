@@ -125,6 +125,8 @@ std::vector<calibration_row> rows_of(const rig_calibration& c) {
   take_rows(t, c);
   t.group = "fit";
   t.text("power at the partials / what noise explains", in_digits(c.fit.misfit, "%.3g"));
+  if (c.fit.loss_scatter > 0)
+    t.text("scatter of the modes' losses about the law, %", in_digits(100 * c.fit.loss_scatter, "%.3g"));
   return t.rows;
 }
 

@@ -145,8 +145,10 @@ void record_channel(const simulation_plan& plan, std::size_t i, std::size_t inde
 
 void record(const simulation_plan& plan, std::size_t i, simulated_take& out) {
   const auto last = static_cast<std::size_t>(plan.channels.back().declared.index);
-  out.recording = {
-      plan.takes[i].declared.file, plan.settings.sample_rate_Hz, {}, plan.bits == 0 ? 32 : plan.bits, plan.bits == 0};
+  out.recording = {.file = plan.takes[i].declared.file,
+                   .sample_rate_Hz = plan.settings.sample_rate_Hz,
+                   .bits = plan.bits == 0 ? 32 : plan.bits,
+                   .float_format = plan.bits == 0};
   out.recording.channels.resize(last + 1);
   auto next = plan.channels.begin();
   for (std::size_t index = 0; index <= last; ++index) {

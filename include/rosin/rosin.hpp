@@ -73,7 +73,9 @@
 #include <rosin/calibrate/end_problem.hpp>
 #include <rosin/calibrate/end_search.hpp>
 #include <rosin/calibrate/free_decay.hpp>
+#include <rosin/calibrate/loss_scatter.hpp>
 #include <rosin/calibrate/moving_string.hpp>
+#include <rosin/calibrate/own_losses.hpp>
 #include <rosin/calibrate/partial_baseband.hpp>
 #include <rosin/calibrate/partial_choice.hpp>
 #include <rosin/calibrate/partial_line.hpp>
@@ -85,9 +87,11 @@
 #include <rosin/calibrate/pickup_pitch.hpp>
 #include <rosin/calibrate/pickup_regression.hpp>
 #include <rosin/calibrate/pickup_string.hpp>
+#include <rosin/calibrate/plain_plucks.hpp>
 #include <rosin/calibrate/pluck_fit.hpp>
 #include <rosin/calibrate/pluck_layout.hpp>
 #include <rosin/calibrate/pluck_model.hpp>
+#include <rosin/calibrate/pluck_options.hpp>
 #include <rosin/calibrate/pluck_problem.hpp>
 #include <rosin/calibrate/pluck_start.hpp>
 #include <rosin/calibrate/stroke_calibration.hpp>

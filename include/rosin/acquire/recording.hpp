@@ -17,6 +17,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// The ending of a file's name that makes it a table, in small letters; empty: it is a sound file.
@@ -34,11 +36,11 @@ namespace rosin {
 struct recording {
   std::string file;  ///< for messages
   double sample_rate_Hz = 0;
-  std::vector<std::vector<double>> channels;  ///< all of one length
-  int bits = 16;                              ///< of a sample in the file
+  std::vector<std::vector<double>> channels{};  ///< all of one length
+  int bits = 16;                                ///< of a sample in the file
   bool float_format = false;
-  std::vector<std::string> columns;  ///< names of a table's columns, where it has them
-  bool is_table = false;             ///< nothing is its full scale
+  std::vector<std::string> columns{};  ///< names of a table's columns, where it has them
+  bool is_table = false;               ///< nothing is its full scale
 
   [[nodiscard]] std::size_t frames() const noexcept { return channels.empty() ? 0 : channels.front().size(); }
   [[nodiscard]] double duration_s() const noexcept { return static_cast<double>(frames()) / sample_rate_Hz; }
@@ -114,3 +116,5 @@ struct take_signals {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -10,6 +10,8 @@
 #include <rosin/acquire/signal_checks.hpp>
 #include <rosin/acquire/stroke_motion.hpp>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin::detail {
 
 /// Within 0.8 % of a rate that converters have: what a wrong header would turn a sound recording into.
@@ -162,3 +164,5 @@ void check_bow(take_check& out, const rig& r, const take& declared, const take_s
 }
 
 }  // namespace rosin::detail
+
+#include <rosin/core/macros_back.ipp>

@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <span>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct stroke_motion {
@@ -177,3 +179,5 @@ ROSIN_INSTANTIATE(stroke_motion motion_of(const take&, const take_signals&))
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -14,6 +14,8 @@
 
 #include <algorithm>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A take as the rig file names it, whatever else it says.
@@ -138,3 +140,5 @@ namespace detail {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

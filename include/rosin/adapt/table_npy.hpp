@@ -8,12 +8,15 @@
 #pragma once
 
 #include <rosin/adapt/table_text.hpp>
+#include <rosin/core/finite_math.hpp>
 
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <optional>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -194,3 +197,5 @@ private:
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

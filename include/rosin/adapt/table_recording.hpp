@@ -13,6 +13,7 @@
 #include <rosin/adapt/table_text.hpp>
 #include <rosin/core/number_text.hpp>
 
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -147,3 +148,5 @@ private:
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

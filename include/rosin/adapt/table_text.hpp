@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/report/table.hpp>
 
@@ -18,6 +19,8 @@
 #include <fstream>
 #include <limits>
 #include <string_view>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -290,3 +293,5 @@ private:
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

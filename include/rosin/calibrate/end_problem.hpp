@@ -173,7 +173,7 @@ template <class Real = double>
   const double f = std::abs(s.imag()) / (2 * std::numbers::pi);
   std::vector<std::pair<Eigen::Index, double>> steps{
       {l::inverse_quality, 1e-6}, {l::internal_loss, 1e-10}, {l::air_loss, 1e-4}, {l::causality, 1e-3}, {l::loss_drag, 1e-3}};
-  for (Eigen::Index p = layout.first_of_uneven(); p < layout.first_of_ends(); ++p) steps.emplace_back(p, 1e-3);
+  for (Eigen::Index p = layout.first_of_uneven(); p < layout.loss_scatter(); ++p) steps.emplace_back(p, 1e-3);
   std::vector<loss_slope> out;
   Eigen::VectorX<Real> more = v;
   for (const auto& [of, step] : steps) {

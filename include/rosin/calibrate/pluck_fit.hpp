@@ -16,7 +16,7 @@
 //
 #pragma once
 
-#include <rosin/calibrate/pluck_problem.hpp>
+#include <rosin/calibrate/loss_scatter.hpp>
 #include <rosin/core/instantiate.hpp>
 
 #include <Eigen/Dense>
@@ -41,10 +41,16 @@ struct pluck_fit_result {
   double horizon_periods = 0;  ///< how much of the decay was used; all of it where the model holds
   int iterations = 0;
   bool converged = false;
+  double loss_scatter = 0;         ///< of ln 1/Q of the modes about the law; 0: none was needed
+  std::vector<double> own_losses;  ///< of each mode, ln of 1/Q over what the law says
 
   template <class = void>
   [[nodiscard]] ringing_string string() const {
     return layout.string(value);
+  }
+  template <class = void>
+  [[nodiscard]] rosin::own_losses own() const {
+    return {string(), Eigen::VectorXd::Map(own_losses.data(), static_cast<Eigen::Index>(own_losses.size()))};
   }
 };
 
@@ -192,6 +198,58 @@ void try_causality(const std::vector<pluck_take>& takes, const pluck_guess& gues
   if (fits && is_causal(other.value[pluck_layout::causality], other.sd[pluck_layout::causality])) result = std::move(other);
 }
 
+/// Two layouts of the same takes, one of which has losses of the modes' own: where the other's parameters stand in it.
+[[nodiscard]] inline std::vector<Eigen::Index> besides_own_losses(const pluck_layout& layout) {
+  std::vector<Eigen::Index> out;
+  for (Eigen::Index p = 0; p < layout.size(); ++p)
+    if (p < layout.loss_scatter() || p >= layout.first_of_ends()) out.push_back(p);
+  return out;
+}
+
+/// The same fit with a loss of its own for each mode; in the result these are set apart.
+template <class Real = double>
+[[nodiscard]] pluck_fit_result with_own_losses(const std::vector<pluck_take>& takes, const pluck_guess& guess,
+                                               pluck_options options, const pluck_fit_result& from) {
+  pluck_fit_result out = from;
+  options.causality = from.layout.is_free(pluck_layout::causality);
+  options.own_losses = modes_heard(from.string(), from.limits, options.most_partials);
+  const pluck_layout layout(takes, options);
+  const std::vector<Eigen::Index> rest = besides_own_losses(layout);
+  Eigen::VectorX<Real> v = Eigen::VectorX<Real>::Zero(layout.size());
+  v(rest) = from.value;
+  v[layout.loss_scatter()] = usual_loss_scatter;
+  const Eigen::VectorX<Real> begin = v;
+  pluck_problem problem(takes, {layout, guess.ac_coupled_Hz}, options, guess, v, options.most_partials, from.horizon_periods,
+                        true, from.noise_N);
+  const auto settle = [&](Eigen::VectorX<Real>& at) {
+    out.converged = descend(problem, problem.model(), begin, at, 25, 1e-3, out.iterations);
+  };
+  settle(v);
+  problem.set_noise(problem.assess(v).noise);
+  settle_scatter(problem, v, settle);
+  const assessment found = problem.assess(v);
+  out.noise_N = found.noise, out.misfit = found.misfit, out.more_than_noise = found.inflation() != 1;
+  out.residual_ratio = found.residual_ratio;
+  const pluck_equations end = problem.linearise(v);
+  const Eigen::MatrixX<Real> inverse = invert_free(problem.model(), end.hessian);
+  const Eigen::MatrixX<Real> all = inverse * (end.prior + found.inflation() * problem.scatter(v)) * inverse;
+  out.value = v(rest), out.covariance = all(rest, rest), out.sd = out.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  out.loss_scatter = v[layout.loss_scatter()];
+  out.own_losses.assign(v.data() + layout.first_of_own(), v.data() + layout.first_of_own() + layout.own_losses());
+  return out;
+}
+ROSIN_INSTANTIATE(pluck_fit_result with_own_losses(const std::vector<pluck_take>&, const pluck_guess&, pluck_options,
+                                                   const pluck_fit_result&))
+
+/// Where more than noise is left and most of it is due to modes that lose each in its own way.
+template <class = void>
+void try_own_losses(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
+                    pluck_fit_result& result) {
+  if (!result.more_than_noise || result.horizon_periods < horizon_periods.front()) return;
+  pluck_fit_result other = with_own_losses(takes, guess, options, result);
+  if (other.misfit - 1 < (result.misfit - 1) / 2) result = std::move(other);
+}
+
 }  // namespace detail
 
 /// Fits `takes` together. Fails, with the take and the reason, where no release is found or the string does not ring as declared,
@@ -208,7 +266,14 @@ template <class Real = double>
 
   const Eigen::VectorX<Real> begin = result.value;
   detail::approach_and_finish(takes, guess, options, result);
-  detail::try_causality(takes, guess, options, begin, result);
+  const pluck_fit_result smooth = result;
+  detail::try_own_losses(takes, guess, options, result);
+  if (result.more_than_noise) {
+    pluck_fit_result causal = smooth;
+    detail::try_causality(takes, guess, options, begin, causal);
+    detail::try_own_losses(takes, guess, options, causal);
+    if (causal.misfit < result.misfit || causal.loss_scatter == 0) result = std::move(causal);
+  }
   const double worst = detail::worst(result);
   if (worst > most_residual)
     return failure{takes.front().name + ": the plucks do not ring as the declared string should (residual " +

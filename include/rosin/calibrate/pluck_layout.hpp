@@ -1,19 +1,19 @@
 // tier: hosted
 // SPDX-License-Identifier: MIT
 //
-// What a fit of plucks is given, which quantities it seeks, and in which order they stand:
+// Which quantities a fit of plucks seeks, and in which order they stand:
 //
 //     f0, b, 1/Q, internal loss, air loss, psi, ln gain near, ln gain far, causality and drag of the loss,     shared by all takes
 //     one position for each declared position, or each take,
 //     per take: instant of release, ln strength, offset near, offset far,
-//     where the loss is uneven, its series,
+//     where the loss is uneven, its series; where each mode has a loss of its own, their scatter, and ln of 1/Q over what the law says,
 //     where terminations are known to move, of each mode: ln of frequency, q and Z / M over what is declared.
 //
 #pragma once
 
-#include <rosin/calibrate/pluck_model.hpp>
+#include <rosin/calibrate/own_losses.hpp>
+#include <rosin/calibrate/pluck_options.hpp>
 #include <rosin/core/outcome.hpp>
-#include <rosin/propagate/termination.hpp>
 
 #include <Eigen/Dense>
 
@@ -26,54 +26,6 @@
 #include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
-
-/// One recorded pluck: forces on the terminations in nominal newtons.
-struct pluck_take {
-  std::string name{};
-  double rate_Hz = 0;
-  std::array<std::vector<double>, 2> force_N{};  ///< near, far; equally long
-  double strength_N = 1;                         ///< nominal breaking force
-  double strength_tolerance = 0.03;              ///< relative, a limit: two standard deviations
-  double position = 0.5;                         ///< declared, from the near end
-};
-
-/// What is known beforehand.
-struct pluck_guess {
-  double fundamental_Hz = 0;  ///< within 2 %
-  double inharmonicity = 0;   ///< within 60 %; 0: unknown
-  double quality = 1000;
-  std::array<double, 2> gain_tolerance{0.05, 0.05};  ///< relative limits
-  std::array<double, 2> ac_coupled_Hz{0, 0};         ///< 0: DC coupled
-  double position_tolerance = 0.005;                 ///< how far, in lengths, a predicted pluck may be from where it is declared
-  /// terminations that are known to move; fit_plucks() takes them for rigid, fit_ends() and a diagnosis do not
-  std::array<modal_termination, 2> ends{};
-
-  [[nodiscard]] bool has_ends() const { return !ends[0].modes.empty() || !ends[1].modes.empty(); }
-};
-
-/// Which nuisances are free, and which band is used.
-struct pluck_options {
-  bool stiffness = true;      ///< false: the string is taken for ideal
-  bool internal_loss = true;  ///< 1/Q may grow with frequency
-  bool air_loss = false;
-  bool convention = true;       ///< psi is fitted
-  bool causality = false;       ///< how much the loss disperses is fitted, with a little of 1/Q as f and 1/f
-  bool uneven_loss = false;     ///< the constant part of 1/Q may be uneven by some hundredths
-  bool own_places = false;      ///< each take has a position of its own
-  double pass_fraction = 0.34;  ///< edges of the band, of the sampling rate: below where converters begin to cut off
-  double stop_fraction = 0.42;
-  int most_partials = 160;  ///< a longer, lower string is fitted over fewer hertz
-  int threads = 1;          ///< of a diagnosis, whose fits do not depend on one another; 0: all cores
-
-  [[nodiscard]] band limits_for(double rate_Hz, double highest_Hz = 1e300) const noexcept {
-    const double stop = std::min(stop_fraction * rate_Hz, highest_Hz);
-    return {stop * pass_fraction / stop_fraction, stop};
-  }
-  /// Ends between the last partial that is fitted and the next, so that no small change of the string moves one across.
-  [[nodiscard]] band limits_for(double rate_Hz, const ringing_string& string) const noexcept {
-    return limits_for(rate_Hz, (string.partial_Hz(most_partials) + string.partial_Hz(most_partials + 1)) / 2);
-  }
-};
 
 /// Where each parameter stands in the vectors and matrices of the fit.
 class pluck_layout {
@@ -111,9 +63,21 @@ public:
   }
   /// What follows the takes is shared by all: the loss's unevenness, and the ends.
   [[nodiscard]] Eigen::Index first_of_uneven() const { return at(group_.size(), 0); }
-  [[nodiscard]] Eigen::Index first_of_ends() const {
+  [[nodiscard]] Eigen::Index loss_scatter() const {
     return first_of_uneven() + (options_.uneven_loss ? 2 * loss_unevenness::orders : 0);
   }
+  /// Of the first mode, ln of its 1/Q over what the law says. There are own_losses() of them.
+  [[nodiscard]] Eigen::Index first_of_own() const { return loss_scatter() + 1; }
+  [[nodiscard]] int own_losses() const { return options_.own_losses; }
+  [[nodiscard]] bool is_own_loss(Eigen::Index p) const { return p >= first_of_own() && p < first_of_ends(); }
+  /// They are free, and known to within their scatter, where that is not zero.
+  [[nodiscard]] bool has_own_losses(const Eigen::VectorXd& v) const { return own_losses() > 0 && v[loss_scatter()] > 0; }
+  template <class = void>
+  [[nodiscard]] rosin::own_losses own_losses_of(const Eigen::VectorXd& v, const ringing_string& string) const {
+    return {string, v.segment(std::min(first_of_own(), v.size()), has_own_losses(v) ? own_losses() : 0)};
+  }
+  void free_own_losses(const Eigen::VectorXd& v) { own_losses_free_ = has_own_losses(v); }
+  [[nodiscard]] Eigen::Index first_of_ends() const { return loss_scatter() + (own_losses() > 0 ? 1 + own_losses() : 0); }
   [[nodiscard]] bool has_ends() const { return size() > first_of_ends(); }
   [[nodiscard]] std::size_t takes() const { return group_.size(); }
   /// Declared positions, one for each that is fitted.
@@ -127,7 +91,8 @@ public:
   [[nodiscard]] bool is_free(Eigen::Index p) const {
     return (p != inharmonicity || options_.stiffness) && (p != internal_loss || options_.internal_loss || options_.causality) &&
            (p != air_loss || options_.air_loss) && (p != convention || options_.convention) &&
-           (p != causality || options_.causality) && (p != loss_drag || options_.causality || options_.air_loss);
+           (p != causality || options_.causality) && (p != loss_drag || options_.causality || options_.air_loss) &&
+           (p < loss_scatter() || p >= first_of_ends() || (own_losses_free_ && p != loss_scatter()));
   }
   /// Gains and strengths: only their products show.
   [[nodiscard]] bool is_scale(Eigen::Index p) const {
@@ -141,6 +106,8 @@ public:
     if (p < first_position) return names[static_cast<std::size_t>(p)];
     if (p < at(0, 0)) return positions_.size() == 1 ? "position" : "position " + std::to_string(p - first_position + 1);
     if (p >= first_of_ends()) return name_of_end(static_cast<std::size_t>(p - first_of_ends()));
+    if (p >= first_of_own()) return "ln_loss of mode " + std::to_string(p - loss_scatter());
+    if (p == loss_scatter()) return "loss_scatter";
     if (p >= first_of_uneven()) return name_of_uneven(static_cast<int>(p - first_of_uneven()));
     const auto i = static_cast<std::size_t>(p - at(0, 0));
     return std::string(mine[i % take_size]) + " of " + names_[i / take_size];
@@ -217,6 +184,7 @@ public:
     if (p == inharmonicity && options_.stiffness && guess.inharmonicity > 0)
       return {guess.inharmonicity, 0.3 * guess.inharmonicity};  // for what does not tell it yet: short looks, few partials
     if (p >= first_of_ends()) return {0, end_doubt[static_cast<std::size_t>(p - first_of_ends()) % 3] / 2};
+    if (p >= loss_scatter()) return {0, 0};  // own losses: by their scatter
     if (p >= first_of_uneven()) return {0, uneven_doubt / 5};
     if (p < at(0, 0) || !is_scale(p)) return {0, 0};
     const pluck_take& take = takes[static_cast<std::size_t>(p - at(0, 0)) / take_size];
@@ -249,7 +217,8 @@ public:
     for (std::size_t t = 0; t < group_.size(); ++t)
       ok = ok && v[position(t)] > 0.002 && v[position(t)] < 0.998 && std::abs(v[position(t)] - start[position(t)]) < 0.06 &&
            std::abs(v[at(t, release)] - start[at(t, release)]) * start[fundamental] < 0.1;
-    for (Eigen::Index p = first_of_uneven(); p < first_of_ends(); ++p) ok = ok && std::abs(v[p]) < 2 * uneven_doubt;
+    for (Eigen::Index p = first_of_uneven(); p < loss_scatter(); ++p) ok = ok && std::abs(v[p]) < 2 * uneven_doubt;
+    for (Eigen::Index p = loss_scatter(); p < first_of_ends(); ++p) ok = ok && std::abs(v[p]) < most_own_loss;
     return ok && ends_within_doubt(v, 2);
   }
   [[nodiscard]] bool ends_within_doubt(const Eigen::VectorXd& v, double times = 1) const {
@@ -265,6 +234,7 @@ public:
   static constexpr std::array end_doubt{0.01, 0.2, 0.1};
   /// how far a loss may be from what its law says, a fifth of it a usual term of its series; twice that is another law
   static constexpr double uneven_doubt = 0.05;
+  static constexpr double most_own_loss = 2;
 
 private:
   [[nodiscard]] static std::string name_of_uneven(int i) {
@@ -282,20 +252,20 @@ private:
   std::vector<Eigen::Index> group_;
   std::vector<std::string> names_;
   std::array<modal_termination, 2> ends_{};
+  bool own_losses_free_ = false;
 };
 
 /// Inverse over the free parameters; rows and columns of the fixed ones are zero.
 template <class Layout>
 [[nodiscard]] Eigen::MatrixXd invert_free(const Layout& layout, const Eigen::MatrixXd& hessian) {
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  Eigen::MatrixXd inverse =
-      scale.asDiagonal() * Eigen::MatrixXd(scaled.completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
+  std::vector<Eigen::Index> free;
   for (Eigen::Index p = 0; p < layout.size(); ++p)
-    if (!layout.is_free(p)) {
-      inverse.row(p).setZero();
-      inverse.col(p).setZero();
-    }
+    if (layout.is_free(p)) free.push_back(p);
+  const Eigen::VectorXd scale = hessian.diagonal()(free).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian(free, free) * scale.asDiagonal();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(hessian.rows(), hessian.cols());
+  inverse(free, free) =
+      scale.asDiagonal() * Eigen::MatrixXd(scaled.completeOrthogonalDecomposition().pseudoInverse()) * scale.asDiagonal();
   return inverse;
 }
 

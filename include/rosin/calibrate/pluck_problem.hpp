@@ -10,6 +10,7 @@
 #pragma once
 
 #include <rosin/calibrate/band_kernels.hpp>
+#include <rosin/calibrate/plain_plucks.hpp>
 #include <rosin/calibrate/pluck_start.hpp>
 #include <rosin/math/levenberg_marquardt.hpp>
 
@@ -30,28 +31,6 @@ concept LineModel = requires(const M& m, const Eigen::VectorXd& v, Eigen::Index 
   { m.release_s(v, take) } -> std::same_as<double>;
   { m.string(v) } -> std::same_as<ringing_string>;
   { m.lines(v, take, std::size_t{}, 0.0, limits, 1) } -> std::same_as<std::vector<damped_line>>;
-};
-
-/// Plucks of a string between pinned ends.
-struct plain_plucks : pluck_layout {
-  std::array<double, 2> ac_coupled_Hz{};
-
-  plain_plucks(const pluck_layout& layout, std::array<double, 2> corner_Hz) : pluck_layout{layout}, ac_coupled_Hz{corner_Hz} {}
-  /// The ringing partials first, then one slow line a channel.
-  [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
-                                               const band& limits, int most) const {
-    const double newtons = std::exp(v[at(take, strength)]), released = release_s(v, take);
-    std::vector<damped_line> out;
-    if (part == 1) out = pluck_lines(string(v), v[position(take)], begin_s - released, limits, most);
-    for (std::size_t c = 0; c < 2; ++c) {
-      const double scale = newtons * gain(v, c), corner = 2 * std::numbers::pi * ac_coupled_Hz[c];
-      for (damped_line& line : out) line.residue[c] *= scale * (corner > 0 ? line.pole / (line.pole + corner) : 1.0);
-    }
-    for (std::size_t c = 0; c < 2; ++c)
-      out.push_back(
-          slow_line(v, take, part, begin_s, c, ac_coupled_Hz[c], newtons * gain(v, c) * static_forces(v[position(take)])[c]));
-    return out;
-  }
 };
 
 /// `prior` is the part of the Hessian that does not come from data.
@@ -76,6 +55,7 @@ public:
                const Eigen::VectorXd& value, int partials, double periods, bool filtered, std::array<double, 2> noise,
                const band_kernels& kernels = {})
       : model_{model}, noise_{noise}, partials_{std::min(partials, options.most_partials)} {
+    model_.free_own_losses(value);
     for (Eigen::Index p = 0; p < model.size(); ++p) prior_.push_back(model.prior(p, takes, guess));
     for (std::size_t i = 0; i < takes.size(); ++i) {
       const double rate = takes[i].rate_Hz;
@@ -179,7 +159,7 @@ std::array<Eigen::MatrixXd, 2> line_problem<Model>::sensitivities(const Eigen::V
   const auto N = static_cast<Eigen::Index>(at.size());
   std::array<Eigen::MatrixXd, 2> out{Eigen::MatrixXd::Zero(model_.size(), 4 * N), Eigen::MatrixXd::Zero(model_.size(), 4 * N)};
   for (Eigen::Index p = 0; p < model_.size(); ++p) {
-    if (!model_.is_free(p) || !model_.concerns(p, take)) continue;
+    if (!model_.is_free(p) || !model_.concerns(p, take) || model_.is_own_loss(p)) continue;
     const double h = model_.step(p, v);
     Eigen::VectorXd up = v, down = v;
     up[p] += h, down[p] -= h;
@@ -195,6 +175,19 @@ std::array<Eigen::MatrixXd, 2> line_problem<Model>::sensitivities(const Eigen::V
         const std::complex<double> drift = at[i].residue[c] * (above[i].pole - below[i].pole) / width;
         out[c].block<1, 4>(p, 4 * n) << change.real(), -change.imag(), drift.real(), -drift.imag();
       }
+  }
+  if (part == 0 || !model_.has_own_losses(v) || !model_.is_free(model_.first_of_own())) return out;
+  const auto own = model_.own_losses_at(v, take, limits_, partials_);
+  const double age_s = takes_[take].part[part].begin_s - model_.release_s(v, take);
+  for (Eigen::Index n = 0; n < N; ++n) {
+    const damped_line& line = at[static_cast<std::size_t>(n)];
+    const auto slope = own.slope_of(line, age_s, limits_);
+    if (slope.mode == 0) continue;
+    for (std::size_t c = 0; c < 2; ++c) {
+      const std::complex<double> change = line.residue[c] * slope.ln_residue, drift = line.residue[c] * slope.pole;
+      out[c].block<1, 4>(model_.first_of_own() + slope.mode - 1, 4 * n) << change.real(), -change.imag(), drift.real(),
+          -drift.imag();
+    }
   }
   return out;
 }
@@ -230,7 +223,8 @@ pluck_equations line_problem<Model>::linearise(const Eigen::VectorXd& v) const {
     }
   });
   for (Eigen::Index p = 0; p < P; ++p) {
-    const auto [known, sd] = prior_[static_cast<std::size_t>(p)];
+    auto [known, sd] = prior_[static_cast<std::size_t>(p)];
+    if (model_.is_own_loss(p)) sd = v[model_.loss_scatter()];
     if (!model_.is_free(p)) eq.hessian(p, p) = 1;
     if (sd <= 0 || !model_.is_free(p)) continue;
     eq.prior(p, p) = 1 / (sd * sd);

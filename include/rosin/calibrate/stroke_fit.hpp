@@ -23,8 +23,11 @@
 
 #include <rosin/calibrate/stroke_problem.hpp>
 #include <rosin/calibrate/stroke_start.hpp>
+#include <rosin/core/finite_math.hpp>
 
 #include <optional>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -227,3 +230,5 @@ template <class = void>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

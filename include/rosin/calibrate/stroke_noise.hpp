@@ -16,6 +16,8 @@
 #include <cmath>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Noise of the recorded channels, rms over all samples, and the relative error of the model.
@@ -67,3 +69,5 @@ template <class Real = double>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

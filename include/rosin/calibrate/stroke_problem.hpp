@@ -23,6 +23,8 @@
 
 #include <Eigen/Dense>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// Mean and standard deviation of each parameter before the fit.
@@ -202,3 +204,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

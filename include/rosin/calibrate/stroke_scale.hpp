@@ -12,6 +12,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/friction/slip_phases.hpp>
 
@@ -22,6 +23,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -119,3 +122,5 @@ struct told_impedance {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

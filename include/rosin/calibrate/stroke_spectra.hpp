@@ -14,6 +14,8 @@
 
 #include <span>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 class stroke_spectra {
@@ -99,3 +101,5 @@ private:
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -10,7 +10,10 @@
 
 #include <rosin/calibrate/pluck_start.hpp>
 #include <rosin/calibrate/stroke_layout.hpp>
+#include <rosin/core/finite_math.hpp>
 #include <rosin/core/outcome.hpp>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -76,3 +79,5 @@ namespace detail {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -21,6 +21,8 @@
 #include <numbers>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 struct uneven_string {
@@ -66,3 +68,5 @@ struct uneven_string {
 };
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

@@ -32,8 +32,10 @@ inline constexpr double most_places_apart = 2e-3;
     moves(from.position(t), 1, to.position(t));
     moves(from.at(t, 0), pluck_layout::take_size, to.at(t, 0));
   }
-  const auto uneven = [](const pluck_layout& l) { return l.first_of_ends() - l.first_of_uneven(); };
+  const auto uneven = [](const pluck_layout& l) { return l.loss_scatter() - l.first_of_uneven(); };
   if (uneven(from) == uneven(to)) moves(from.first_of_uneven(), uneven(from), to.first_of_uneven());
+  if (from.own_losses() == to.own_losses())
+    moves(from.loss_scatter(), from.first_of_ends() - from.loss_scatter(), to.loss_scatter());
   if (from.size() - from.first_of_ends() == to.size() - to.first_of_ends())
     moves(from.first_of_ends(), from.size() - from.first_of_ends(), to.first_of_ends());
   moves(from.size(), size - from.size(), to.size());

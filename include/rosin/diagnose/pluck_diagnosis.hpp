@@ -27,11 +27,13 @@ namespace detail {
 template <class = void>
 [[nodiscard]] outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess,
                                                      const pluck_options& options) {
+  pluck_options all = options;
+  all.own_losses = 0;                     // whether there are any is asked there
   constexpr double most_residual = 0.95;  // a heavy bead leaves little of the declared string
-  if (!guess.has_ends()) return fit_plucks(takes, guess, options, most_residual);
+  if (!guess.has_ends()) return fit_plucks(takes, guess, all, most_residual);
   end_options held;
   held.free_ends = {false, false}, held.most_residual = most_residual;
-  auto fit = fit_ends(takes, guess, options, held);
+  auto fit = fit_ends(takes, guess, all, held);
   if (!fit) return failure{fit.error()};
   return std::move(fit->plucks);
 }
@@ -57,6 +59,11 @@ template <class Real = double>
       covariance(places[i], places[k]) = fit->covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
   fit->value = carried_over(layout, fit->layout, fit->value), fit->sd = carried_over(layout, fit->layout, fit->sd);
   fit->covariance = std::move(covariance), fit->layout = layout;
+  if (fit->loss_scatter > 0) {
+    fit->value[layout.loss_scatter()] = fit->loss_scatter;
+    const auto count = std::min<std::size_t>(fit->own_losses.size(), static_cast<std::size_t>(layout.own_losses()));
+    for (std::size_t n = 0; n < count; ++n) fit->value[layout.first_of_own() + static_cast<Eigen::Index>(n)] = fit->own_losses[n];
+  }
   return fit;
 }
 
@@ -103,6 +110,9 @@ template <class = void>
                                                             int most_effects, double least_temper = 1,
                                                             double stop_above = 1e300) {
   constexpr double clearly_less = 0.9;  // of what the first effect leaves
+  if (options.own_losses == 0 && !takes.empty())
+    options.own_losses = modes_heard({guess.fundamental_Hz, guess.inharmonicity}, options.limits_for(takes.front().rate_Hz),
+                                     options.most_partials);
   auto declared = fit_declared_loosely(takes, guess, options);
   if (!declared) return failure{declared.error()};
   options.causality = declared->layout.is_free(pluck_layout::causality);

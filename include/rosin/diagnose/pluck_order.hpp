@@ -25,14 +25,14 @@ inline double cost_of(const scene_fit& f, const std::array<double, 2>& noise) {
 }
 
 /// -2 ln of the evidence but for a constant (Schwarz): what a fit leaves, and what its effects' parameters cost, in the units of
-/// what is left. Corrections cost nothing.
+/// what is left. Corrections cost nothing, losses of the modes' own what their scatter makes of them.
 inline double price_of(const scene_fit& f, const std::array<double, 2>& noise) {
   double parameters = 0, samples = 1;
   for (const pluck_effect& e : f.effects)
     for (const effect_parameter& p : e.parameters) parameters += p.late ? 0 : 1;
   for (const double n : f.quality.samples) samples += n;
   const double cost = cost_of(f, noise);
-  return cost + parameters * std::log(samples) * cost / samples;
+  return cost + (parameters * std::log(samples) + f.losses_price) * cost / samples;
 }
 
 /// An effect whose model holds for a short time only stays if over that time it is the best, and worth anything.

@@ -30,9 +30,10 @@ public:
   template <class = void>
   pluck_score(const problem& fitted, const Eigen::VectorXd& value) : problem_{fitted}, value_{value} {
     const pluck_equations eq = fitted.linearise(value);
-    solver_.compute(eq.hessian);
-    gradient_ = eq.gradient;
-    step_ = solver_.solve(gradient_);
+    for (Eigen::Index p = 0; p < value.size(); ++p)
+      if (fitted.model().is_free(p)) free_.push_back(p);
+    solver_.compute(eq.hessian(free_, free_));
+    step_ = solver_.solve(eq.gradient(free_));
     for (std::size_t t = 0; t < fitted.takes(); ++t) views_.push_back(view_of(t));
   }
 
@@ -47,7 +48,7 @@ public:
     }
     if (const auto& rebase = with.effects().back().rebase) rebase(with, v);
     double dr = 0, dd = 0;
-    Eigen::VectorX<Real> dJ = Eigen::VectorX<Real>::Zero(value_.size());
+    Eigen::VectorX<Real> dJ = Eigen::VectorX<Real>::Zero(step_.size());
     for (std::size_t t = 0; t < views_.size(); ++t) {
       const auto& s = problem_.part(t, 1);
       if (s.count() == 0) continue;
@@ -66,7 +67,7 @@ public:
   template <class Real = double>
   [[nodiscard]] column_score of_columns(const std::vector<std::array<Eigen::VectorXd, 2>>& columns) const {
     double dr = 0, dd = 0;
-    Eigen::VectorX<Real> dJ = Eigen::VectorX<Real>::Zero(value_.size());
+    Eigen::VectorX<Real> dJ = Eigen::VectorX<Real>::Zero(step_.size());
     for (std::size_t t = 0; t < views_.size(); ++t)
       for (std::size_t c = 0; c < 2; ++c) {
         const Eigen::VectorX<Real>& d = columns[t][c];
@@ -98,7 +99,8 @@ private:
     const double step_s = 1 / problem_.rate_Hz(t);
     for (const damped_line& line : w.lines) w.steps.emplace_back(line.pole, step_s, s.count());
     w.gram = line_gram(w.lines, step_s, s.count());
-    w.to = problem_.sensitivities(value_, t, 1, w.lines);
+    const auto to = problem_.sensitivities(value_, t, 1, w.lines);
+    for (std::size_t c = 0; c < 2; ++c) w.to[c] = to[c](free_, Eigen::all);
     const auto p = problem_.project(s, problem_.rate_Hz(t), w.lines);
     for (std::size_t c = 0; c < 2; ++c) {
       const Eigen::MatrixX<Real> flat = p.onto_lines[c].transpose();
@@ -253,7 +255,8 @@ private:
   }
 
   const problem& problem_;
-  Eigen::VectorXd value_, gradient_, step_;
+  Eigen::VectorXd value_, step_;
+  std::vector<Eigen::Index> free_;  // parameters that the fit moves
   Eigen::LDLT<Eigen::MatrixXd> solver_;
   std::vector<view> views_;
 };

@@ -175,7 +175,7 @@ private:
     c.temper = std::max(d_.data.least_temper, tried.quality.inflation());
     c.samples = tried.quality.samples[0] + tried.quality.samples[1];
     const double without = cost_of(before, noise_), with = cost_of(tried, noise_);
-    c.gain = 0.5 * (without - with) / c.temper;
+    c.gain = 0.5 * (without - with + before.losses_price - tried.losses_price) / c.temper;
     c.left = std::max(0.0, with - c.samples), c.was = std::max(1e-9, without - c.samples);
     return c;
   }
@@ -187,7 +187,8 @@ private:
     if (std::none_of(d_.ranking.begin(), d_.ranking.end(), there)) rank(d_.best);
     const double n = samples(d_.best), temper = std::max(d_.data.least_temper, d_.best.quality.inflation());
     for (auto& h : d_.ranking)
-      h.log_evidence = -0.5 * cost_of(h.fit, noise_) * n / (samples(h.fit) * temper) - 0.5 * free_parameters(h.fit) * std::log(n);
+      h.log_evidence = -0.5 * (cost_of(h.fit, noise_) * n / samples(h.fit) + h.fit.losses_price) / temper -
+                       0.5 * free_parameters(h.fit) * std::log(n);
   }
   /// Whether the last effects of two fits are two models of the same effect.
   [[nodiscard]] static bool is_variant(const scene_fit& a, const scene_fit& b) {
@@ -200,11 +201,13 @@ private:
     d_.alternatives.clear();
     for (const scene_fit& f : fits)
       if (!is_variant(f, tried) && f.horizon_periods == tried.horizon_periods &&
-          0.5 * (cost_of(f, noise_) - cost_of(tried, noise_)) / c.temper < 5 && free_parameters(f) <= free_parameters(tried) + 2)
+          0.5 * (cost_of(f, noise_) + f.losses_price - cost_of(tried, noise_) - tried.losses_price) / c.temper < 5 &&
+          free_parameters(f) <= free_parameters(tried) + 2)
         d_.alternatives.push_back(f.effects.back().id());
     if (first_.empty()) first_ = tried.effects.back().name, first_leaves_ = c.left / c.was;
     now_ = tried;
     weigh_ = noise_;  // by the declared model's, all that is left beside something strong would pass for noise
+    now_ = or_with_own_losses(d_.data, std::move(now_), weigh_);
   }
   /// Whether one was found and another may follow.
   template <class = void>
@@ -263,7 +266,6 @@ private:
   std::string first_;
   double first_leaves_ = 0;  ///< of the power of the mismatch
 };
-
 using search_result = std::pair<pluck_diagnosis, double>;
 
 /// `d`, searched, and the noise. What is a doubtful beginning is kept unless a search that begins otherwise leaves a ninth: one of

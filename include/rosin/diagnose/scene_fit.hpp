@@ -21,6 +21,7 @@ struct scene_fit {
   std::vector<double> score_sd;  ///< of parameters found by score steps
   assessment quality;
   double horizon_periods = 0;  ///< how much of the decay was used
+  double losses_price = 0;     ///< of modes with losses of their own (own_losses.hpp), part of -2 ln(evidence)
   int iterations = 0;
   bool converged = false;
 
@@ -150,10 +151,17 @@ double score_steps(const scene_data& data, scene_fit& fit, const fit_stage& stag
   return largest;
 }
 
+/// Whether modes have losses of their own, and a fit moves them.
+template <class = void>
+[[nodiscard]] bool is_free_own_loss(const line_problem<scene_plucks>& problem) {
+  return problem.model().own_losses() > 0 && problem.model().is_free(problem.model().first_of_own());
+}
+
 /// Quality and covariance of a fit that has settled.
 template <class Real = double>
 void conclude(scene_fit& fit, const scene_data& data, const line_problem<scene_plucks>& problem) {
   fit.quality = problem.assess(fit.value);
+  fit.losses_price = is_free_own_loss(problem) ? scatter_of(problem, fit.value).price : 0.0;
   const pluck_equations end = problem.linearise(fit.value);
   const Eigen::MatrixX<Real> inverse = invert_free(problem.model(), end.hessian);
   fit.covariance = inverse * (end.prior + fit.quality.inflation() * problem.scatter(fit.value)) * inverse;
@@ -173,7 +181,7 @@ void conclude(scene_fit& fit, const scene_data& data, const line_problem<scene_p
 template <class = void>
 [[nodiscard]] scene_fit fit_scene(const scene_data& data, const std::vector<pluck_effect>& effects, const Eigen::VectorXd& value,
                                   std::vector<fit_stage> stages, std::array<double, 2> noise) {
-  scene_fit fit{effects, value, {}, {}, {}, {}, 0, 0, false};
+  scene_fit fit{effects, value, {}, {}, {}, {}, 0, 0, 0, false};
   bool again = false;  // what is taken out of the recordings depends on the fit
   for (const pluck_effect& e : effects) again = again || e.undo;
   for (fit_stage& s : stages) s.periods = std::min(s.periods, data.most_periods_with(effects));
@@ -182,8 +190,12 @@ template <class = void>
     for (int round = 0; round < (again ? (last ? 8 : 2) : 1); ++round) {
       const line_problem<scene_plucks> problem = data.problem(effects, fit.value, stages[i], noise);
       const int before = fit.iterations;
-      fit.converged =
-          detail::descend(problem, problem.model(), value, fit.value, last ? 25 : 10, last ? 1e-2 : 1.0, fit.iterations);
+      const auto settle = [&](Eigen::VectorXd& at) {
+        fit.converged = detail::descend(problem, problem.model(), value, at, last ? 25 : 10, last ? 1e-2 : 1.0, fit.iterations);
+      };
+      if (last && stages[i].periods > 1e8 && detail::is_free_own_loss(problem))
+        detail::settle_scatter(problem, fit.value, settle, 2);
+      else settle(fit.value);
       fit.score_sd.clear();
       if (again && detail::score_steps(data, fit, stages[i], noise) < 0.05 && fit.iterations <= before + 2) break;
     }
@@ -194,6 +206,23 @@ template <class = void>
 }
 ROSIN_INSTANTIATE(scene_fit fit_scene(const scene_data&, const std::vector<pluck_effect>&, const Eigen::VectorXd&,
                                       std::vector<fit_stage>, std::array<double, 2>))
+
+namespace detail {
+
+/// A fit that leaves more than noise with a loss of its own for each mode, where that accounts for most of it; else as it is.
+template <class Real = double>
+[[nodiscard]] scene_fit or_with_own_losses(const scene_data& data, scene_fit fit, std::array<double, 2> noise) {
+  const pluck_layout& layout = data.layout;
+  if (fit.quality.inflation() == 1 || fit.horizon_periods < 1e8 || layout.own_losses() == 0 || layout.has_own_losses(fit.value))
+    return fit;
+  Eigen::VectorX<Real> value = fit.value;
+  value[layout.loss_scatter()] = usual_loss_scatter;
+  scene_fit other = fit_scene(data, fit.effects, value, {{1000, fit.horizon_periods, true, freedom::all}}, noise);
+  return other.quality.inflation() - 1 < (fit.quality.inflation() - 1) / 2 ? std::move(other) : std::move(fit);
+}
+ROSIN_INSTANTIATE(scene_fit or_with_own_losses(const scene_data&, scene_fit, std::array<double, 2>))
+
+}  // namespace detail
 
 }  // namespace rosin
 

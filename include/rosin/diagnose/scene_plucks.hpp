@@ -98,7 +98,7 @@ public:
       if (p < at(0, 0)) return p >= first_position && free_ == freedom::release_and_place;
       return p < first_of_uneven();
     }
-    if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_uneven())) return false;
+    if (free_ != freedom::all && (p >= plain_size() ? added(p).late : p >= first_of_uneven() && !is_own_loss(p))) return false;
     return p >= plain_size() ? !added(p).by_score : pluck_layout::is_free(p);
   }
   [[nodiscard]] bool is_scale(Eigen::Index p) const { return p < plain_size() && pluck_layout::is_scale(p); }
@@ -138,6 +138,15 @@ public:
     return s;
   }
 
+  /// Of the string's own lines, whatever moves them.
+  template <class = void>
+  [[nodiscard]] rosin::own_losses own_losses_at(const Eigen::VectorXd& v, std::size_t take, const band& limits, int most) const {
+    const pluck_scene s = scene(v, static_cast<int>(take));
+    rosin::own_losses own = own_losses_of(v, s.string);
+    if (s.plain_string()) own.follow(detail::string_lines(s, v[position(take)], most, {}, limits.stop_Hz));
+    else own.follow(strings_->lines(key(v, s), s, v[position(take)], limits, most));
+    return own;
+  }
   template <class = void>
   [[nodiscard]] std::vector<damped_line> lines(const Eigen::VectorXd& v, std::size_t take, std::size_t part, double begin_s,
                                                const band& limits, int most) const {
@@ -147,8 +156,14 @@ public:
     // of the lines, by a high-pass: r s / (s + w) of a line r / (s - p) leaves Re(r w / (p + w)) exp(-w t)
     std::array<double, 2> remembered{};
     if (part == 1) {
-      out = s.plain_string() ? scene_lines(s, position_now, limits, most, {})
-                             : recorded_lines(strings_->lines(key(v, s), s, position_now, limits, most), s, position_now, limits);
+      out = s.plain_string() ? detail::string_lines(s, position_now, most, {}, limits.stop_Hz)
+                             : strings_->lines(key(v, s), s, position_now, limits, most);
+      if (has_own_losses(v)) {
+        rosin::own_losses own = own_losses_of(v, s.string);
+        own.follow(out);
+        for (damped_line& line : out) own.apply_to(line);
+      }
+      out = recorded_lines(std::move(out), s, position_now, limits);
       for (damped_line& line : out) {
         for (std::size_t c = 0; c < 2; ++c)
           remembered[c] +=
@@ -173,15 +188,16 @@ public:
   }
 
 private:
-  /// What the poles depend on.
+  /// What the poles depend on: not on what modes lose of their own, which moves each by itself.
   template <class Real = double>
   [[nodiscard]] Eigen::VectorXd key(const Eigen::VectorXd& v, const pluck_scene& s) const {
-    const Eigen::Index more = v.size() - first_of_uneven();
+    const Eigen::Index series = loss_scatter() - first_of_uneven(), more = v.size() - first_of_ends();
     constexpr Eigen::Index of_loss = loss_drag + 1 - causality;
-    Eigen::VectorX<Real> k(gain_near + of_loss + more + 1);
-    k << v.head(gain_near), v.segment<of_loss>(causality), v.tail(more), s.string.fundamental_Hz;
+    Eigen::VectorX<Real> k(gain_near + of_loss + series + more + 1);
+    k << v.head(gain_near), v.segment<of_loss>(causality), v.segment(first_of_uneven(), series), v.tail(more),
+        s.string.fundamental_Hz;
     // what may be about 0: how near a string is tells by their size
-    k.segment(gain_near, of_loss + plain_size() - first_of_uneven()).array() += 1;
+    k.segment(gain_near, of_loss + series + plain_size() - first_of_ends()).array() += 1;
     return k;
   }
 

@@ -49,10 +49,12 @@ template <class Real = double>
 [[nodiscard]] std::vector<found_start> support_starts(const scene_data& data, const std::vector<pluck_effect>& supports) {
   end_options one;
   one.most_modes = 1;
-  const auto fitted = fit_ends(data.takes, data.guess, data.options, one);
-  if (!fitted || fitted->modes.empty() || fitted->plucks.value.size() != data.layout.first_of_ends()) return {};
+  pluck_options by_the_law = data.options;
+  by_the_law.own_losses = 0;
+  const auto fitted = fit_ends(data.takes, data.guess, by_the_law, one);
+  if (!fitted || fitted->modes.empty() || fitted->plucks.value.size() != data.layout.loss_scatter()) return {};
   Eigen::VectorX<Real> value = Eigen::VectorX<Real>::Zero(data.layout.size());  // known ends as declared
-  value.head(data.layout.first_of_ends()) = fitted->plucks.value;
+  value.head(data.layout.loss_scatter()) = fitted->plucks.value;
   const admittance_mode& mode = fitted->modes.front().mode;
   std::vector<found_start> out;
   for (const pluck_effect& e : supports) {

@@ -26,6 +26,8 @@
 #include <thread>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// What a kill may leave beside a file that is being changed.
@@ -91,7 +93,7 @@ inline void wait_until_settled(const std::string& path) {
 namespace detail {
 
 /// The file itself, where the name is a link.
-[[nodiscard]] inline std::string followed(const std::string& path) {
+[[nodiscard]] inline std::string end_of_links(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_symlink(path, error)) return path;
   const auto out = std::filesystem::weakly_canonical(path, error);
@@ -231,12 +233,12 @@ private:
 /// called several times, and nothing happens where it gives back what it got.
 template <class Calls = posix_calls, class Change>
 [[nodiscard]] std::optional<failure> change_durably(const std::string& path, Change change) {
-  return detail::text_exchange<Calls>{detail::followed(path)}.apply(std::move(change));
+  return detail::text_exchange<Calls>{detail::end_of_links(path)}.apply(std::move(change));
 }
 
 /// Clears away what a killed program has left beside the file; the names of what is kept, since the file does not say it.
 [[nodiscard]] inline std::vector<std::string> clear_remnants(const std::string& path) {
-  return detail::text_exchange<posix_calls>{detail::followed(path)}.clear();
+  return detail::text_exchange<posix_calls>{detail::end_of_links(path)}.clear();
 }
 
 /// Whatever was there before.
@@ -246,3 +248,5 @@ template <class Calls = posix_calls>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

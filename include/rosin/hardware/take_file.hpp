@@ -27,6 +27,8 @@
 #include <thread>
 #include <vector>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// A file of the system, locked as long as it is open.
@@ -204,3 +206,5 @@ struct take_remains {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

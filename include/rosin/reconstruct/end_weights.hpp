@@ -28,6 +28,8 @@
 #include <complex>
 #include <numbers>
 
+#include <rosin/core/macros_aside.ipp>
+
 namespace rosin {
 
 /// How much of a force on either end is in the force and the velocity at the contact.
@@ -98,3 +100,5 @@ struct end_noise {
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

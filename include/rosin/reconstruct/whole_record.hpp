@@ -11,6 +11,7 @@
 //
 #pragma once
 
+#include <rosin/core/finite_math.hpp>
 #include <rosin/math/fft.hpp>
 #include <rosin/propagate/band.hpp>
 #include <rosin/reconstruct/end_weights.hpp>
@@ -18,6 +19,8 @@
 
 #include <span>
 #include <vector>
+
+#include <rosin/core/macros_aside.ipp>
 
 namespace rosin {
 
@@ -103,3 +106,5 @@ template <class Rate>
 }
 
 }  // namespace rosin
+
+#include <rosin/core/macros_back.ipp>

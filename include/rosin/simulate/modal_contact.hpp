@@ -34,7 +34,7 @@ class modal_contact {
 public:
   template <class = void>
   modal_contact(const modal_rig& rig, double position, double mode_limit_Hz, double step_s)
-      : rig_{rig}, step_{step_s}, transverse_{transverse_modes(rig.string, mode_limit_Hz), rig.damping, {position}, step_s},
+      : rig_{rig}, step_{step_s}, transverse_{transverse_modes(rig, mode_limit_Hz), rig.damping, {position}, step_s},
         torsion_{torsional_modes(rig, mode_limit_Hz), damping_convention::viscous, {position}, step_s} {
     set_place(position);
     rest_before_ = rest_;

@@ -69,7 +69,7 @@ struct ringing_mode {
                                                              const modal_settings& settings, double step_s) {
   constexpr std::complex<double> i{0, 1};
   std::vector<ringing_mode> ringing;
-  for (const auto& mode : transverse_modes(rig.string, settings.mode_limit_Hz)) {
+  for (const auto& mode : transverse_modes(rig, settings.mode_limit_Hz)) {
     const auto p = mode.pole();
     const double deflection = pluck.force_N * mode.shape(pluck.position) / (mode.mass_kg * mode.omega_rad_s * mode.omega_rad_s);
     const auto zeta = 1.0 + i * p.real() / p.imag();

@@ -24,6 +24,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <vector>
 
 #include <rosin/propagate/string_parameters.hpp>
@@ -45,11 +46,35 @@ struct modal_torsion {
   [[nodiscard]] bool present() const noexcept { return speed_ratio > 0 && impedance_ratio > 0; }
 };
 
+/// How unevenly modes lose: ln 1/Q of mode n is off by a normal deviate of its own.
+struct uneven_loss {
+  double scatter = 0;  ///< its standard deviation; 0: as the law says
+  std::uint64_t seed = 0;
+
+  [[nodiscard]] double factor(int n) const noexcept {
+    return scatter == 0 ? 1.0 : std::exp(scatter * deviate(seed * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(n)));
+  }
+
+private:
+  /// Bits mixed as by splitmix64 (Steele, Lea & Flood 2014), evenly in (0, 1).
+  [[nodiscard]] static double evenly(std::uint64_t z) noexcept {
+    z += 0x9e3779b97f4a7c15ULL;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return (static_cast<double>((z ^ (z >> 31)) >> 11) + 0.5) * 0x1p-53;
+  }
+  [[nodiscard]] static double deviate(std::uint64_t key) noexcept {
+    constexpr double pi = 3.14159265358979323846;
+    return std::sqrt(-2 * std::log(evenly(2 * key))) * std::cos(2 * pi * evenly(2 * key + 1));
+  }
+};
+
 /// The mechanical part of a rig with rigid terminations.
 struct modal_rig {
   string_parameters string{};
   modal_torsion torsion{};
   damping_convention damping = damping_convention::viscous;
+  uneven_loss uneven{};  ///< of the string's modes
 };
 
 /// One mode: a damped oscillator whose free motion goes as exp(pole() t).
@@ -137,6 +162,14 @@ namespace detail {
     modes.push_back(detail::clamped_mode(string, clamping, n));
     if (!(modes.back().omega_rad_s <= 2 * 3.14159265358979323846 * limit_Hz)) return modes.pop_back(), modes;
   }
+}
+
+/// The same of a rig, whose modes may lose unevenly.
+[[nodiscard]] inline std::vector<string_mode> transverse_modes(const modal_rig& rig, double limit_Hz,
+                                                               const std::array<double, 2>& clamping = {}) {
+  std::vector<string_mode> modes = transverse_modes(rig.string, limit_Hz, clamping);
+  for (string_mode& m : modes) m.inverse_quality *= rig.uneven.factor(m.number);
+  return modes;
 }
 
 /// Forces on near and far end for a steady 1 N at `position`, likewise: an end takes clamping sqrt(B / T) from the length.

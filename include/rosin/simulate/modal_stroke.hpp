@@ -166,7 +166,7 @@ template <class = void>
 [[nodiscard]] stroke_energy account_of(const modal_rig& rig, const stroke_steps& s, double limit_Hz, double step_s) {
   stroke_energy out{.rod_J = integral_of_product(s.force, s.rod, step_s),
                     .friction_J = -integral_of_product(s.force, s.slip, step_s)};
-  energy_account transverse{transverse_modes(rig.string, limit_Hz), step_s}, torsion{torsional_modes(rig, limit_Hz), step_s};
+  energy_account transverse{transverse_modes(rig, limit_Hz), step_s}, torsion{torsional_modes(rig, limit_Hz), step_s};
   transverse.follow(s.force, s.position);
   torsion.follow(s.force, s.position);
   out.transverse = transverse.total(), out.torsion = torsion.total();

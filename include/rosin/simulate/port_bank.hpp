@@ -24,7 +24,7 @@ public:
   port_bank(const modal_rig& rig, double axial_stiffness_N, double limit_Hz, double step_s,
             const std::array<double, 2>& clamping = {})
       : length_{rig.string.length_m}, axial_{axial_stiffness_N}, step_{step_s} {
-    modes_ = transverse_modes(rig.string, limit_Hz, clamping);
+    modes_ = transverse_modes(rig, limit_Hz, clamping);
     transverse_ = static_cast<Eigen::Index>(modes_.size());
     const auto turning = torsional_modes(rig, limit_Hz);
     modes_.insert(modes_.end(), turning.begin(), turning.end());

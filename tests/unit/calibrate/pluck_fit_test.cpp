@@ -70,6 +70,29 @@ TEST_CASE("one pluck gives string, position, release, ratio of gains and noise, 
   CHECK(fit->sd[layout::gain_near] == test::approx(1 / std::sqrt(std::pow(0.015, -2) + 2 * std::pow(0.025, -2))).epsilon(0.02));
 }
 
+TEST_CASE("modes that lose each in its own way: the fit says how far they scatter, and all else within its error bars") {
+  rosin::modal_rig uneven = guitar_rig;
+  uneven.uneven = {0.15, 7};
+  const auto fit =
+      rosin::fit_plucks({pluck(0.3, 1, 3, 0.14, 0, rosin::damping_convention::viscous, uneven)}, {.fundamental_Hz = 660});
+  REQUIRE_MESSAGE(fit, fit.error());
+  CHECK(fit->loss_scatter == test::approx(0.15).epsilon(0.3));
+  CHECK_FALSE(fit->more_than_noise);
+  CHECK(sigmas(*fit, layout::fundamental, 659.69) < 4);
+  CHECK(sigmas(*fit, layout::inharmonicity, guitar_rig.string.inharmonicity()) < 4);
+  CHECK(sigmas(*fit, layout::inverse_quality, 1e-3) < 4);
+  CHECK(fit->sd[layout::inverse_quality] > 1e-5);  // a law is known to no more than what is off it
+  CHECK(sigmas(*fit, layout::first_position, 0.3) < 4);
+  CHECK(sigmas(*fit, fit->layout.at(0, layout::release), 0.004) < 4);
+  REQUIRE(fit->own_losses.size() > 60);
+  for (int n = 1; n <= 20; ++n)
+    CHECK(std::abs(fit->own_losses[static_cast<std::size_t>(n - 1)] - std::log(uneven.uneven.factor(n))) < 0.1);
+  const auto even = rosin::fit_plucks({pluck(0.3, 1, 3)}, {.fundamental_Hz = 660});
+  REQUIRE(even);
+  CHECK(even->loss_scatter == 0);
+  CHECK(even->own_losses.empty());
+}
+
 TEST_CASE("it starts from 2 % off in pitch and 0.02 in position") {
   for (const double pitch : {0.98, 1.02})
     for (const double place : {-0.02, 0.02}) {

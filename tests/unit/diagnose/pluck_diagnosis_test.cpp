@@ -69,6 +69,34 @@ TEST_CASE("a string whose loss is causal is no mismatch, and what is hidden besi
   }
 }
 
+TEST_CASE("modes that lose each in its own way are no mismatch, and what is hidden beside them is found" *
+          doctest::test_suite("long")) {
+  auto rig = test::plucked_rig;
+  rig.uneven = {0.15, 5};
+  for (const double leaks : {0.0, 0.01}) {
+    CAPTURE(leaks);
+    auto takes = test::recorded_plucks({1, 0.5, 0.75}, [&](double force_N) {
+      auto made = rosin::simulate_pluck(rig, {.position = 0.3, .force_N = force_N, .release_s = 0.004, .duration_s = 0.1});
+      for (std::size_t i = 0; made && i < made->force_near_N.size(); ++i) {
+        const double near = made->force_near_N[i], far = made->force_far_N[i];
+        made->force_near_N[i] = near + leaks * far, made->force_far_N[i] = far + leaks * near;
+      }
+      return made;
+    });
+    const auto held = test::last_of(takes);
+    const auto d = look(takes, held.front());
+    REQUIRE_MESSAGE(d, d.error());
+    CHECK(d->explained);
+    CHECK(d->mismatched == (leaks > 0));
+    CHECK(d->after < 1.2 * d->floor);
+    CHECK(d->best.value[d->data.layout.loss_scatter()] == test::approx(0.15).epsilon(0.3));
+    REQUIRE(d->best.effects.size() == (leaks > 0 ? 1 : 0));
+    if (leaks == 0) continue;
+    CHECK(d->best.effects[0].id() == "channel-crosstalk");
+    CHECK(d->best.values_of(0)[0] == test::approx(leaks).epsilon(0.02));
+  }
+}
+
 TEST_CASE("a wire that lets go slowly is named, with its duration, and the pluck that was kept aside is predicted" *
           doctest::test_suite("long")) {
   constexpr double slow = 40e-6;

@@ -89,4 +89,25 @@ TEST_CASE("torsion: harmonic, one Q, and as stiff as the surface against both en
   CHECK(rosin::torsional_modes({.string = e_string}, 4e7).empty());
 }
 
+TEST_CASE("uneven losses are normal deviates of the modes' own, the same for a seed") {
+  rosin::modal_rig rig{.string = e_string};
+  const auto even = rosin::transverse_modes(rig, 1e6);
+  rig.uneven = {0.15, 3};
+  const auto once = rosin::transverse_modes(rig, 1e6), again = rosin::transverse_modes(rig, 1e6);
+  rig.uneven.seed = 4;
+  const auto other = rosin::transverse_modes(rig, 1e6);
+  double sum = 0, squares = 0, together = 0;
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    const double d = std::log(once[i].inverse_quality / even[i].inverse_quality) / 0.15;
+    CHECK(once[i].inverse_quality == again[i].inverse_quality);
+    CHECK(once[i].omega_rad_s == even[i].omega_rad_s);
+    sum += d, squares += d * d, together += d * std::log(other[i].inverse_quality / even[i].inverse_quality) / 0.15;
+  }
+  const auto n = static_cast<double>(once.size());
+  CHECK(n > 200);
+  CHECK(std::abs(sum / n) < 3 / std::sqrt(n));
+  CHECK(std::abs(squares / n - 1) < 3 * std::sqrt(2 / n));
+  CHECK(std::abs(together / n) < 3 / std::sqrt(n));
+}
+
 }  // namespace simulate_modal_string
