@@ -170,7 +170,7 @@ std::optional<rosin::failure> write_challenge(const challenge_rig& rig, const fs
   const auto existing = force ? rosin::overwrite::allow : rosin::overwrite::refuse;
   std::uint64_t seed = rig.base.seed * 1000;
   for (const auto& take : takes) {
-    rosin::recording out{.name = take.name, .sample_rate_Hz = 128000, .bits = rig.base.bits};
+    rosin::recording out{.file = take.name, .sample_rate_Hz = 128000, .bits = rig.base.bits};
     for (std::size_t c = 0; c < 2; ++c) {
       auto with = rig.converters[c];
       with.newtons_per_full_scale = full_scale[c], with.bits = rig.base.bits;

@@ -19,7 +19,8 @@ TEST_CASE("Parameters of strokes stand in order and have names") {
 TEST_CASE("A tension that drifts moves pitch and dispersion of one take as a string's does") {
   const strokes_layout l(2, 2);
   Eigen::VectorXd v = Eigen::VectorXd::Zero(l.size());
-  v[strokes_layout::fundamental] = 300, v[strokes_layout::inharmonicity] = 5e-5, v[strokes_layout::ln_inverse_quality] = std::log(1e-3);
+  v[strokes_layout::fundamental] = 300, v[strokes_layout::inharmonicity] = 5e-5,
+  v[strokes_layout::ln_inverse_quality] = std::log(1e-3);
   v[l.drift(1)] = 1e-3;
   const rosin::string_parameters at_rest{0.3, 60, 300, 5e-5 * 60 * 0.09 / std::pow(std::numbers::pi, 2)};
   auto tighter = at_rest;
