@@ -66,6 +66,7 @@ struct stroke_fit_result {
     return {contrast.dot(value), std::sqrt(std::max(0.0, contrast.dot(covariance * contrast)))};
   }
   /// Beyond five standard deviations, of a spread that is no rounding.
+  template <class = void>
   [[nodiscard]] bool drifted(std::size_t take) const {
     const auto d = drift(take);
     return (!odd || *odd != take) && drift_spread > 2e-6 && std::abs(d.value) > 5 * d.sd;

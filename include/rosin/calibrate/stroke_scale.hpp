@@ -15,6 +15,7 @@
 #include <rosin/core/finite_math.hpp>
 #include <rosin/core/outcome.hpp>
 #include <rosin/friction/slip_phases.hpp>
+#include <rosin/math/median.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,12 +43,6 @@ struct sticking_scale {
 };
 
 namespace detail {
-
-[[nodiscard]] inline double median_of(std::vector<double> x) {
-  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
-  std::nth_element(x.begin(), middle, x.end());
-  return *middle;
-}
 
 /// Factor and share of one take; none where less than a tenth of the steady part sticks.
 struct sticking_take {
@@ -81,7 +76,7 @@ struct sticking_take {
       if (inside[i]) ratio.push_back(take.surface_m_s[i] / take.rod_m_s[i]);
     found.share = phases.sticking();
     if (ratio.size() < 50 || 10 * ratio.size() < phases.known) return {std::nullopt, found.share};
-    factor = 1 / median_of(std::move(ratio));
+    factor = 1 / median_of(ratio);
   }
   found.factor = factor;
   return found;
@@ -101,12 +96,12 @@ struct sticking_take {
   }
   if (found.empty())
     return failure{"the string sticks in none of the strokes: the scale of the force over the impedance cannot be had"};
-  out.factor = detail::median_of(found);
+  out.factor = median_of(found);
   std::vector<double> off;
   for (const double f : found) off.push_back(std::abs(f / out.factor - 1));
   // of a median; a single take is taken at its word to half a per cent
   out.sd = out.factor *
-           (found.size() < 3 ? 5e-3 : 1.25 * 1.4826 * detail::median_of(off) / std::sqrt(static_cast<double>(found.size())));
+           (found.size() < 3 ? 5e-3 : 1.25 * 1.4826 * median_of(off) / std::sqrt(static_cast<double>(found.size())));
   return out;
 }
 

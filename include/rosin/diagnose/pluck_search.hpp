@@ -194,6 +194,7 @@ private:
   [[nodiscard]] static bool is_variant(const scene_fit& a, const scene_fit& b) {
     return a.effects.back().name == b.effects.back().name && a.effects.back().place == b.effects.back().place;
   }
+  template <class = void>
   void accept(const std::vector<scene_fit>& fits, const comparison& c) {
     const scene_fit& tried = fits.front();
     d_.mismatched = true;
