@@ -206,9 +206,8 @@ private:
           free_parameters(f) <= free_parameters(tried) + 2)
         d_.alternatives.push_back(f.effects.back().id());
     if (first_.empty()) first_ = tried.effects.back().name, first_leaves_ = c.left / c.was;
-    now_ = tried;
     weigh_ = noise_;  // by the declared model's, all that is left beside something strong would pass for noise
-    now_ = or_with_own_losses(d_.data, std::move(now_), weigh_);
+    now_ = or_with_own_losses(d_.data, tried, weigh_);
   }
   /// Whether one was found and another may follow.
   template <class = void>
