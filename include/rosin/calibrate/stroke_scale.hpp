@@ -100,8 +100,7 @@ struct sticking_take {
   std::vector<double> off;
   for (const double f : found) off.push_back(std::abs(f / out.factor - 1));
   // of a median; a single take is taken at its word to half a per cent
-  out.sd = out.factor *
-           (found.size() < 3 ? 5e-3 : 1.25 * 1.4826 * median_of(off) / std::sqrt(static_cast<double>(found.size())));
+  out.sd = out.factor * (found.size() < 3 ? 5e-3 : 1.25 * 1.4826 * median_of(off) / std::sqrt(static_cast<double>(found.size())));
   return out;
 }
 
