@@ -33,7 +33,7 @@ rosin::rig bare(rosin::rig r) {
 
 std::string keys(const rosin::rig& r) {
   std::string out;
-  for (const auto& s : rosin::find_magnitude_slips(r)) out += s.key + "=" + rosin::detail::digits_of(s.likely) + " ";
+  for (const auto& s : rosin::find_magnitude_slips(r)) out += s.key + "=" + rosin::number_text(s.likely) + " ";
   return out;
 }
 
