@@ -194,6 +194,6 @@ print $rig <<"END" if !$short;
 name = "bow-1"
 kind = "bow"
 file = "bow-1.wav"
-speed_m_s = 0.05
+speed_m_s = 0.3
 normal_force_N = 0.3
 END
