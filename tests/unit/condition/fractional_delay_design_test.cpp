@@ -70,7 +70,7 @@ TEST_CASE("a whole delay is one tap of one") {
 TEST_CASE("what cannot be designed is named") {
   CHECK(rosin::design_kaiser_delay(std::numeric_limits<double>::quiet_NaN()).error().find("nan") != std::string::npos);
   CHECK(rosin::design_kaiser_delay(std::numeric_limits<double>::infinity()).error().find("1e9") != std::string::npos);
-  CHECK(rosin::design_kaiser_delay(1.5, {1.0, -80}).error().find("bandwidth 1.0") != std::string::npos);
+  CHECK(rosin::design_kaiser_delay(1.5, {1.0, -80}).error().find("bandwidth 1 ") != std::string::npos);
   CHECK(rosin::design_kaiser_delay(1.5, {0.8, -300}).error().find("-300") != std::string::npos);
 }
 
