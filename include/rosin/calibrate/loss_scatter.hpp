@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace rosin::detail {
 
@@ -21,6 +22,18 @@ inline constexpr double usual_loss_scatter = 0.1, least_loss_scatter = 2e-3;
   int n = 0;
   while (n < most && string.partial_Hz(n + 1) < limits.stop_Hz) ++n;
   return n;
+}
+
+/// Whether losses differ from mode to mode, as their prior has it: independently. A trend over many modes is something else that the
+/// model lacks, a slow release, say, which they took up. The sum of products of neighbours is held against three times what it is by
+/// chance where their signs are, its root mean square over all signs.
+[[nodiscard]] inline bool scatters_from_mode_to_mode(std::span<const double> ln_loss) noexcept {
+  double sum = 0, squares = 0;
+  for (std::size_t n = 1; n < ln_loss.size(); ++n) {
+    const double product = ln_loss[n - 1] * ln_loss[n];
+    sum += product, squares += product * product;
+  }
+  return sum <= 3 * std::sqrt(squares);
 }
 
 /// The scatter that the evidence asks for, and what own losses cost of it: sum d_n^2 / s^2 + ln(s^2 / v_n).

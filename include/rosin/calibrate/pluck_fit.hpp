@@ -247,7 +247,7 @@ void try_own_losses(const std::vector<pluck_take>& takes, const pluck_guess& gue
                     pluck_fit_result& result) {
   if (!result.more_than_noise || result.horizon_periods < horizon_periods.front()) return;
   pluck_fit_result other = with_own_losses(takes, guess, options, result);
-  if (other.misfit - 1 < (result.misfit - 1) / 2) result = std::move(other);
+  if (other.misfit - 1 < (result.misfit - 1) / 2 && scatters_from_mode_to_mode(other.own_losses)) result = std::move(other);
 }
 
 }  // namespace detail

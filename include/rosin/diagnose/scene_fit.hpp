@@ -218,7 +218,9 @@ template <class Real = double>
   Eigen::VectorX<Real> value = fit.value;
   value[layout.loss_scatter()] = usual_loss_scatter;
   scene_fit other = fit_scene(data, fit.effects, value, {{1000, fit.horizon_periods, true, freedom::all}}, noise);
-  return other.quality.inflation() - 1 < (fit.quality.inflation() - 1) / 2 ? std::move(other) : std::move(fit);
+  const bool less = other.quality.inflation() - 1 < (fit.quality.inflation() - 1) / 2;
+  const std::span own(other.value.data() + layout.first_of_own(), static_cast<std::size_t>(layout.own_losses()));
+  return less && scatters_from_mode_to_mode(own) ? std::move(other) : std::move(fit);
 }
 ROSIN_INSTANTIATE(scene_fit or_with_own_losses(const scene_data&, scene_fit, std::array<double, 2>))
 

@@ -15,6 +15,22 @@ TEST_CASE("modes are heard up to the band's edge") {
   CHECK(rosin::detail::modes_heard(string, {8e3, 10.25e3}, 12) == 12);
 }
 
+TEST_CASE("losses scatter from mode to mode: neighbours know nothing of one another, a trend is none") {
+  std::mt19937_64 random{7};
+  std::normal_distribution<double> gauss{0, 0.15};
+  int taken_for_trends = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    std::vector<double> d(40);
+    for (double& x : d) x = gauss(random);
+    taken_for_trends += !rosin::detail::scatters_from_mode_to_mode(d);
+  }
+  CHECK(taken_for_trends < 8);
+  std::vector<double> slow_release;
+  for (int n = 0; n < 40; ++n) slow_release.push_back(0.15 * (1 - n * n / 400.0) + 0.2 * gauss(random));
+  CHECK_FALSE(rosin::detail::scatters_from_mode_to_mode(slow_release));
+  CHECK(rosin::detail::scatters_from_mode_to_mode({}));
+}
+
 TEST_CASE("the scatter that the evidence asks for is that of what was drawn; none is asked for by modes that follow the law") {
   std::mt19937_64 random{4};
   std::normal_distribution<double> gauss;
