@@ -245,7 +245,7 @@ ROSIN_INSTANTIATE(pluck_fit_result with_own_losses(const std::vector<pluck_take>
 template <class = void>
 void try_own_losses(const std::vector<pluck_take>& takes, const pluck_guess& guess, const pluck_options& options,
                     pluck_fit_result& result) {
-  if (!result.more_than_noise || result.horizon_periods < horizon_periods.front()) return;
+  if (!options.asks_own_losses || !result.more_than_noise || result.horizon_periods < horizon_periods.front()) return;
   pluck_fit_result other = with_own_losses(takes, guess, options, result);
   if (other.misfit - 1 < (result.misfit - 1) / 2 && scatters_from_mode_to_mode(other.own_losses)) result = std::move(other);
 }

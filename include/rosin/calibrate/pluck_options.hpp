@@ -50,7 +50,8 @@ struct pluck_options {
   bool causality = false;       ///< how much the loss disperses is fitted, with a little of 1/Q as f and 1/f
   bool uneven_loss = false;     ///< the constant part of 1/Q may be uneven by some hundredths
   bool own_places = false;      ///< each take has a position of its own
-  int own_losses = 0;           ///< how many modes may have a loss of their own (own_losses.hpp)
+  int own_losses = 0;           ///< of a diagnosis: how many modes may have a loss of their own (own_losses.hpp)
+  bool asks_own_losses = true;  ///< of fit_plucks(): modes have losses of their own where the recordings ask for them
   double pass_fraction = 0.34;  ///< edges of the band, of the sampling rate: below where converters begin to cut off
   double stop_fraction = 0.42;
   int most_partials = 160;  ///< a longer, lower string is fitted over fewer hertz

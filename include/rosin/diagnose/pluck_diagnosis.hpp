@@ -28,7 +28,7 @@ template <class = void>
 [[nodiscard]] outcome<pluck_fit_result> fit_declared(const std::vector<pluck_take>& takes, const pluck_guess& guess,
                                                      const pluck_options& options) {
   pluck_options all = options;
-  all.own_losses = 0;                     // whether there are any is asked there
+  all.own_losses = 0, all.asks_own_losses = options.own_losses > 0;
   constexpr double most_residual = 0.95;  // a heavy bead leaves little of the declared string
   if (!guess.has_ends()) return fit_plucks(takes, guess, all, most_residual);
   end_options held;
@@ -110,9 +110,6 @@ template <class = void>
                                                             int most_effects, double least_temper = 1,
                                                             double stop_above = 1e300) {
   constexpr double clearly_less = 0.9;  // of what the first effect leaves
-  if (options.own_losses == 0 && !takes.empty())
-    options.own_losses = modes_heard({guess.fundamental_Hz, guess.inharmonicity}, options.limits_for(takes.front().rate_Hz),
-                                     options.most_partials);
   auto declared = fit_declared_loosely(takes, guess, options);
   if (!declared) return failure{declared.error()};
   options.causality = declared->layout.is_free(pluck_layout::causality);
