@@ -113,13 +113,13 @@ simulate = { rate_Hz = 64000, duration_s = 0.2, seed = 4 }
 model = { physics = ["bending-stiffness"], friction = "velocity-curve" }
 take = [ { name = "pluck-1", kind = "pluck", file = "pluck-1.wav", force_N = 1.0 },
   { name = "pluck-2", kind = "pluck", file = "pluck-2.wav", force_N = 0.6 },
-  { name = "bow-1", kind = "bow", file = "bow-1.wav", speed_m_s = 0.2, normal_force_N = 0.3, normal_force_profile_N = [[0.06, 0.3], [0.064, 0]] } ]
+  { name = "bow-1", kind = "bow", file = "bow-1.wav", speed_m_s = 0.3, normal_force_N = 0.3, normal_force_profile_N = [[0.06, 0.3], [0.064, 0]] } ]
 [channels]
 near = { index = 0, newtons_per_full_scale = 2 }
 far = { index = 1, newtons_per_full_scale = 2 }
 TOML
 expect 0 simulate lifted.toml --out lifted
-expect 0 reconstruct lifted --take bow-1 --out lifted.csv --json lifted.json
+expect 1 reconstruct lifted --take bow-1 --out lifted.csv --json lifted.json
 says "free decay at the end: the bow is off from 0.06" "against the plucks; Q"
 perl -MJSON::PP -e 'local $/; my $d = decode_json(<STDIN>); my $f = $d->{free_decay};
   exit !(abs($f->{fundamental_Hz} / 660 - 1) < 6e-5 && abs($f->{cents_from_plucks}) < 0.2 && abs(800 * $f->{loss}[0]{inverse_q} - 1) < 0.01
@@ -156,9 +156,9 @@ expect 2 reconstruct short --take bow-1
 
 # what cannot be so: a speed in mm/s, a normal force in the wrong decade; the table is written all the same
 cp -r rig wrong
-sed -i 's/^speed_m_s = 0.3/speed_m_s = 300/' wrong/rig.toml
+sed -i 's/^speed_m_s = 0.3/speed_m_s = 30/' wrong/rig.toml
 expect 1 reconstruct wrong --take bow-1 --calibration fit.json --out wrong.csv
-says "no slip was found" "with a speed = 0.3 it would be" "take \"bow-1\".speed_m_s is"
+says "no slip was found" "with a speed = 0.3 it would be"
 expect 0 validate wrong.csv
 
 if command -v gnuplot >/dev/null; then
