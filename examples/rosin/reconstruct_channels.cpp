@@ -9,7 +9,7 @@ namespace tool {
 
 namespace {
 
-/// Mean over the known samples.
+/// Mean over these samples.
 double mean_of(const std::vector<double>& x, rosin::sample_range known) {
   double sum = 0;
   for (std::size_t i = known.begin; i < known.end; ++i) sum += x[i];
@@ -84,7 +84,7 @@ void add_rod_and_normal_force(const rosin::rig&, const rosin::take& take, const 
   }
   if (const auto* gauge = calibrated_channel(read, rosin::quantity::normal_force)) {
     const auto& motion = read.check.motion;
-    r.normal_force_N = mean_of(gauge->values, r.known);
+    r.normal_force_N = mean_of(gauge->values, r.bowed());
     r.normal_from = "channel " + gauge->sensor.name;
     if (motion && motion->normal_channel == gauge->sensor.name && motion->steady_normal_force_N) {
       r.normal_force_N = motion->steady_normal_force_N;
@@ -94,7 +94,7 @@ void add_rod_and_normal_force(const rosin::rig&, const rosin::take& take, const 
                                                     "its level while the bow is off the string (N)"));
     }
   } else if (!take.normal_force_profile_N.empty()) {
-    r.normal_force_N = mean_of(from_profile(take.normal_force_profile_N, n, r.rate_Hz), r.known);
+    r.normal_force_N = mean_of(from_profile(take.normal_force_profile_N, n, r.rate_Hz), r.bowed());
     r.normal_from = "the declared profile";
   } else if (take.normal_force_N) {
     r.normal_force_N = take.normal_force_N;
@@ -104,7 +104,7 @@ void add_rod_and_normal_force(const rosin::rig&, const rosin::take& take, const 
     if (declared && std::abs(measured - *declared) > 0.05 * *declared)
       r.warnings.push_back(what + " is " + in_digits(measured) + " in the mean, declared as " + in_digits(*declared));
   };
-  if (r.rod_from.starts_with("channel")) differs("the sled's speed", mean_of(r.rod_m_s, r.known), take.speed_m_s);
+  if (r.rod_from.starts_with("channel")) differs("the sled's speed", mean_of(r.rod_m_s, r.bowed()), take.speed_m_s);
   if (r.normal_from.starts_with("channel")) differs("the normal force", *r.normal_force_N, take.normal_force_N);
 }
 

@@ -41,7 +41,7 @@ std::pair<double, double> extremes(const std::vector<double>& x, std::size_t beg
 /// Where the motion is steady, or all that is known while the bow is on.
 rosin::sample_range main_part(const take_reconstruction& r) {
   if (r.steady_end > r.steady_begin) return {std::max(r.steady_begin, r.known.begin), std::min(r.steady_end, r.known.end)};
-  return {r.known.begin, std::min(r.known.end, r.lifted.value_or(r.known.end))};
+  return r.bowed();
 }
 
 double slipping_fraction(const take_reconstruction& r, rosin::sample_range in) {

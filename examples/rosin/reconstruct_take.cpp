@@ -227,7 +227,7 @@ void add_torsion(const rosin::rig& rig, take_reconstruction& r) {
 void find_slips(take_reconstruction& r) {
   if (r.rod_m_s.empty()) return;
   bool caught = false, slipping = false;
-  for (std::size_t i = r.known.begin; i < std::min(r.known.end, r.lifted.value_or(r.known.end)); ++i) {
+  for (std::size_t i = r.bowed().begin; i < r.bowed().end; ++i) {
     const double rolling = !r.torsion_m_s.empty() && std::isfinite(r.torsion_m_s[i]) ? r.torsion_m_s[i] : 0;
     const double ratio = r.rod_m_s[i] > 0 ? (r.velocity_m_s[i] + rolling) / r.rod_m_s[i] : 0;
     caught = caught || ratio > 0.75;
@@ -240,8 +240,7 @@ void find_slips(take_reconstruction& r) {
 
 /// Where the rod moves and the bow is on: what cannot be so.
 void doubt(const rosin::take& take, take_reconstruction& r) {
-  std::size_t begin = r.known.begin;
-  const std::size_t end = std::min(r.known.end, r.lifted.value_or(r.known.end));
+  auto [begin, end] = r.bowed();
   if (r.rod_m_s.empty()) return;
   while (begin < end && !(std::abs(r.rod_m_s[begin]) > 0)) ++begin;
   std::vector<double> surface(r.velocity_m_s.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -338,8 +337,8 @@ rosin::outcome<take_reconstruction> reconstruct_take(const rosin::rig& rig, cons
   compare_domains(r);
   finish_columns(r);
   add_torsion(rig, r);
-  add_rod_and_normal_force(rig, take, read, r);
   find_free_decay(r);
+  add_rod_and_normal_force(rig, take, read, r);
   find_slips(r);
   add_comparisons(rig, take, read, r);
   estimate_level(rig, r);

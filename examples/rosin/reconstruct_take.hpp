@@ -60,6 +60,8 @@ struct take_reconstruction {
   bool contradicts_itself = false;  ///< some of the warnings say what cannot be so
 
   [[nodiscard]] double time_s(std::size_t i) const { return static_cast<double>(i) / rate_Hz; }
+  /// What is known while the bow is on.
+  [[nodiscard]] rosin::sample_range bowed() const { return {known.begin, std::min(known.end, lifted.value_or(known.end))}; }
   [[nodiscard]] double slips_per_period() const;
 };
 

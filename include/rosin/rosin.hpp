@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: MIT
 //
 // The map of the library, in the order in which a signal meets it. Adapters to third-party packages
-// (<rosin/adapt/…>: files, other FFTs) are included one by one, by whoever has the package.
+// (<rosin/adapt/…>: files, other FFTs) are included one by one, by whoever has the package. One line a header, hence so many.
 //
-//   acquire ─▶ condition ─▶ calibrate ─▶ propagate / reconstruct ─▶ friction ─▶ simulate ─▶ report
-//   the rig,    delays,      plucks:      the string from its ends   laws of     strings     tables,
-//   checks of   resampling,  gains,       to the bow: force and      the bow's   in motion   files
-//   recordings  long FIRs    delays, B,Q  velocity there             grip
-//   hardware: where the frames come from and go to (digitisers, takes on the disk), and what moves the bow
-//   ───────────────── core (stage, pipeline, outcome) · math (FFT, chirp-z, least squares) ─────────────────
+//   acquire ─▶ condition ─▶ calibrate ─▶ propagate / reconstruct ─▶ torsion, friction ─▶ diagnose ─▶ report
+//   the rig,    delays,      plucks or    the string from its ends   what the surface     physics     tables,
+//   checks of   resampling,  strokes:     to the bow: force and      does; laws of the    that was    files
+//   recordings  long FIRs    gains, Q     velocity there             bow's grip           left out
+//   simulate: strings in motion    hardware: where frames come from and go to, and what moves the bow
+//   ──────────── core (stage, pipeline, outcome) · math (FFT, chirp-z, Levenberg-Marquardt, robust losses) ────────────
 //
 #pragma once
 

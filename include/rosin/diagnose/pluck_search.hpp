@@ -23,9 +23,7 @@
 
 #include <rosin/core/macros_aside.ipp>
 
-namespace rosin {
-
-namespace detail {
+namespace rosin::detail {
 
 inline std::vector<std::string> ids_of(const scene_fit& f) {
   std::vector<std::string> ids;
@@ -297,8 +295,6 @@ template <class = void>
 }
 ROSIN_INSTANTIATE(search_result searched(const pluck_diagnosis&, std::vector<pluck_effect>, int, search_memory&, bool))
 
-}  // namespace detail
-
-}  // namespace rosin
+}  // namespace rosin::detail
 
 #include <rosin/core/macros_back.ipp>

@@ -11,8 +11,7 @@
 //
 //     d/dt (k_n q_n)' = -4 (R / Z) f_1 n sin(n pi x_d) sum (k_m q_m)' sin(m pi x_d) / m.
 //
-// A mass M makes other modes of the string, combinations v of those without it; each is stiffened by v^T n^2 v in place of n^2.
-// (What stretching moves from one to another is too little to show.)
+// A mass M makes other modes, combinations v of those without it, each stiffened by v^T n^2 v in place of n^2 (they hardly mix).
 //
 #pragma once
 

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <support/columns_of.hpp>
+
 #include <rosin/report/npy.hpp>
 #include <support/temporary_folder.hpp>
 
@@ -25,15 +27,8 @@ std::string doubles(std::initializer_list<double> values) {
   for (const double x : values) rosin::detail::put_little_endian(out, std::bit_cast<std::uint64_t>(x), 8);
   return out;
 }
-std::vector<std::vector<double>> values(const std::string& bytes) {
-  const auto read = rosin::parse_npy(bytes, "a.npy");
-  CHECK(read.error() == "");
-  std::vector<std::vector<double>> out;
-  if (read)
-    for (const auto& c : read->data.columns) out.push_back(c.values);
-  return out;
-}
-using columns = std::vector<std::vector<double>>;
+using test::columns;
+columns values(const std::string& bytes) { return test::columns_of(rosin::parse_npy(bytes, "a.npy")); }
 
 }  // namespace
 

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <support/columns_of.hpp>
+
 #include <support/temporary_folder.hpp>
 
 namespace adapt_table_text {
@@ -11,16 +13,10 @@ namespace {
 
 std::string wrong(std::string_view text) { return rosin::parse_table_text(text, "a.csv").error(); }
 
-std::vector<std::vector<double>> values(std::string_view text, std::size_t max_rows = rosin::all_rows) {
-  const auto read = rosin::parse_table_text(text, "a.csv", max_rows);
-  CHECK(read.error() == "");
-  std::vector<std::vector<double>> out;
-  if (read)
-    for (const auto& c : read->data.columns) out.push_back(c.values);
-  return out;
+using test::columns;
+columns values(std::string_view text, std::size_t max_rows = rosin::all_rows) {
+  return test::columns_of(rosin::parse_table_text(text, "a.csv", max_rows));
 }
-
-using columns = std::vector<std::vector<double>>;
 
 }  // namespace
 
