@@ -240,7 +240,8 @@ void find_slips(take_reconstruction& r) {
 
 /// Where the rod moves and the bow is on: what cannot be so.
 void doubt(const rosin::take& take, take_reconstruction& r) {
-  auto [begin, end] = r.bowed();
+  std::size_t begin = r.bowed().begin;
+  const std::size_t end = r.bowed().end;
   if (r.rod_m_s.empty()) return;
   while (begin < end && !(std::abs(r.rod_m_s[begin]) > 0)) ++begin;
   std::vector<double> surface(r.velocity_m_s.begin() + static_cast<std::ptrdiff_t>(begin),
